@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -49,14 +50,21 @@ def signs(frfs: FrfSet) -> FloatArray:
 
 def arrange(frfs: FrfSet) -> Arrangement:
     """Sort the FRFs into a matrix; a pair of degrees of freedom that stands twice keeps its last FRF."""
-    responses = tuple(unsigned(d) for d in frfs.responses)
-    references = tuple(unsigned(d) for d in frfs.references)
+    return _arranged(frfs.responses, frfs.references)
+
+
+@lru_cache(maxsize=8)
+def _arranged(named: tuple[Dof, ...], excited: tuple[Dof, ...]) -> Arrangement:
+    """Return the arrangement of FRFs by their degrees of freedom, which an identification asks for often."""
+    responses = tuple(unsigned(d) for d in named)
+    references = tuple(unsigned(d) for d in excited)
     transposed = len(set(responses)) < len(set(references))
     long, short = (references, responses) if transposed else (responses, references)
     rows, columns = tuple(dict.fromkeys(long)), tuple(dict.fromkeys(short))
     row, column = {d: i for i, d in enumerate(rows)}, {d: i for i, d in enumerate(columns)}
     index = np.full((len(rows), len(columns)), -1, dtype=np.int64)
     index[[row[d] for d in long], [column[d] for d in short]] = np.arange(len(long))
+    index.setflags(write=False)
     return Arrangement(rows, columns, index, transposed)
 
 

@@ -15,7 +15,7 @@ from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
 from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
-from identification.arrangement import arrange, signs, unsigned
+from identification.arrangement import signs, unsigned
 from identification.band.uninformed import uninformed_modes
 from identification.fit.course import course_of, resampled
 from identification.fit.equations import basis
@@ -28,18 +28,15 @@ from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
 from identification.line_shapes import fit_shaped
 from identification.model import ModalModel
+from identification.orders import charted
 from identification.poles import ESTIMATORS
-from identification.poles.selection import candidates
-from identification.poles.stabilisation import StabilisationChart, stabilise
+from identification.poles.stabilisation import StabilisationChart
 from identification.scaling import Shapes, mode_shapes
 from identification.trend import Trend, frequency_trend
 from identification.uncertainty import covariance, doubts
 from identification.uncertainty.hit_scatter import NoiseFactors
 
-_ORDER = 60
-_LEVELS = 25
 _POOR_FIT = 4.0  # power left over that of the noise that is worth a word
-_HIGHEST = 400
 _KEPT = 8  # fits with modes named by the user that are kept: so many picks can be undone without a new fit
 # Standard deviations by which constants of a mode exceed their noise, in r.m.s. over the FRFs, where it is one even
 # if the damping is not resolved, as between lines far apart. Noise fitted by a pole has 1 to 2, such modes above 70.
@@ -73,7 +70,7 @@ def identify(
     band : tuple of float, optional
         Lowest and highest frequency; default all lines [Hz].
     order : int, optional
-        Largest number of poles tried; default 60, fewer if there are few lines [-].
+        Largest number of poles tried; default 60, more if modes crowd it, fewer if there are few lines [-].
     method : str
         Pole estimator that supplies the candidates, one of `ESTIMATORS`: lscf, lsce, or one of your own.
     add, drop : sequence of float
@@ -225,11 +222,8 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
     data, points_rejected = _usable(frfs, band)
     data, course, foreign = _of_one_structure(data)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
-    estimator = ESTIMATORS[method]
     even = data if course is None else resampled(data, course)
-    sets = estimator(even, orders=order_list(data, order, poly_reference=estimator.poly_reference))
-    chart = stabilise(sets, band=limits)
-    start = candidates(chart)
+    chart, start = charted(even, ESTIMATORS[method], band=limits, order=order)
     if len(start) == 0:
         raise EstimationError(
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
@@ -290,26 +284,6 @@ def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tup
         raise EstimationError(f"{frfs.source}: all FRFs are zero in the band; there is nothing to identify")
     names = tuple(f"{data.responses[i]}/{data.references[i]}: the FRF is zero" for i in np.flatnonzero(dead))
     return (data.select(np.flatnonzero(~dead)) if dead.any() else data), names
-
-
-def order_list(frfs: FrfSet, order: int | None, *, poly_reference: bool) -> list[int]:
-    """Return the orders to try: up to ``order`` poles, in some 25 steps, as far as the lines carry them.
-
-    Raises
-    ------
-    InputError
-        If the order is under 2 or beyond 400.
-    """
-    columns = len(arrange(frfs).columns) if poly_reference else 1
-    wanted = _ORDER if order is None else order
-    if wanted < 2:
-        raise InputError(f"order {wanted} leaves no room for a mode; use 2 or more")
-    if wanted > _HIGHEST:
-        raise InputError(f"order {wanted} is beyond {_HIGHEST}; rather cut the band into pieces")
-    carried = max(2, len(frfs.frequency) // 2)
-    top = min(max(wanted // columns, min(wanted, 16)), carried)
-    bottom = max(1, min(top - 1, max(top // 6, 2)))
-    return sorted({int(n) for n in np.linspace(bottom, top, _LEVELS).round()})
 
 
 @dataclass(frozen=True, eq=False)

@@ -105,10 +105,9 @@ def _lag(first: FloatArray, second: FloatArray, reach: int) -> int:
 
 
 def _width(peaks: FloatArray) -> int:
-    """Return at what distance peaks no longer overlap by half [steps]."""
-    length = 2 * peaks.shape[1]
-    own = np.fft.irfft(np.sum(np.abs(np.fft.rfft(peaks, length, axis=1)) ** 2, axis=0), length)
-    return int(np.argmax(own < 0.5 * own[0]))
+    """Return at what distance peaks no longer overlap by half [steps]; 0 if they do at any."""
+    n, half = peaks.shape[1], 0.5 * float(np.vdot(peaks, peaks))
+    return next((k for k in range(1, n) if np.vdot(peaks[:, : n - k], peaks[:, k:]) < half), 0)
 
 
 def resampled(frfs: FrfSet, course: FloatArray) -> FrfSet:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, squared
 from acquisition.frfs.frf import FrfSet
 from identification.arrangement import arrange
 from identification.fit.equations import basis
@@ -214,9 +214,7 @@ def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
     mode in that FRF counts as its noise. A drift leaves much too, and still shows: over all lines of a peak.
     """
     density = 1.0 / np.abs(frfs.laplace[None, :] - fit.poles[:, None]) ** 2
-    left = (weights.full * np.abs(left_over(frfs, fit)) ** 2) @ (
-        density / density.sum(axis=1, keepdims=True)
-    ).T
+    left = (weights.full * squared(left_over(frfs, fit))) @ (density / density.sum(axis=1, keepdims=True)).T
     return np.asarray(1.0 / np.sqrt(np.maximum(left, 1.0)))
 
 

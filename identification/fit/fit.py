@@ -15,8 +15,9 @@ from identification.fit.course import without_course
 from identification.fit.drift import Drift, carried_over, estimate_drift
 from identification.fit.equations import background
 from identification.fit.equations.normal_equations import Weights
+from identification.fit.equations.projection import State
 from identification.fit.equations.pruning import inside
-from identification.fit.equations.refine import Fit, State, refine
+from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.noise import leakage, window_shaped
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
@@ -236,7 +237,8 @@ def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArr
 def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself, carry over to common poles and refine until all agree."""
     data = carried_over(frfs, fit, drift.at(fit.poles))
-    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, search_weights(data, fit))
+    residual = left_over(data, fit)
+    absorbed = absorbed_by(data, fit, search_weights(data, fit, residual))
     weights, variance, measured = _noise(data, fit, residual, absorbed)
     for _ in range(_COARSE_WEIGHINGS):
         fit = _refined(data, fit, weights, band, COARSE)

@@ -19,8 +19,10 @@ from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.frfs.frf import FrfSet
+from identification.fit.equations.iteration import decaying
 from identification.fit.equations.normal_equations import Weights
-from identification.fit.equations.refine import Step, decaying, evaluate, fit_at
+from identification.fit.equations.projection import Step
+from identification.fit.equations.refine import evaluate, fit_at
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights
 from identification.levels.hits import Judged, UsedHits, mean_level, used_hits, why_not

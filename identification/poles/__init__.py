@@ -5,7 +5,7 @@ from identification.poles.lsce import lsce
 from identification.poles.lscf import lscf
 
 ESTIMATORS: dict[str, PoleEstimator] = {
-    "lscf": PoleEstimator(lscf, poly_reference=True),
+    "lscf": PoleEstimator(lscf, poly_reference=True, any_order=True),
     "lsce": PoleEstimator(lsce),
 }
 

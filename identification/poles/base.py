@@ -59,10 +59,13 @@ class PoleEstimator:
         The estimator, ``find(frfs, orders=...)``.
     poly_reference : bool
         Whether an order counts the poles of each reference; if not, those of all together.
+    any_order : bool
+        Whether the order may be raised up to half as many as there are lines, where the FRFs hold many modes.
     """
 
     find: FindPoles
     poly_reference: bool = False
+    any_order: bool = False
 
     def __call__(self, frfs: frf.FrfSet, *, orders: Sequence[int]) -> PoleSets:
         """Return the poles at each order."""

@@ -81,7 +81,7 @@ def _shifted(fitted: Fitted, separation: Disagreement) -> FloatArray:
     """Return the variance of each constant by the scatter of its FRF's own pole, (n_frf, n_modes) [1/kg^2]."""
     fit = fitted.fit
     n = len(fit.poles)
-    gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
+    gain = fit.pole_gain.reshape(-1, n, n, 2)
     own = np.einsum("jnna->jna", gain)
     shift = np.einsum("jna,jnab,jnb->jn", own, separation.each, own)
     return np.asarray((2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0))
@@ -99,14 +99,14 @@ def shared_errors(fitted: Fitted, factors: NoiseFactors) -> FloatArray:
     size = np.sqrt(np.diag(covariance))
     values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
     half = (np.sqrt(np.repeat(factors.poles, 2)) * size)[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
-    moved = fit.pole_gain[:, 1 : 2 * len(fit.poles) : 2] @ half
+    moved = fit.pole_gain @ half
     return np.asarray(-2.0 * fit.poles.imag[:, None] * moved)
 
 
 def own_errors(fitted: Fitted, factors: NoiseFactors, separation: Disagreement) -> FloatArray:
     """Return the standard deviation of each constant's real part with the poles known, (n_frf, n_modes) [1/kg]."""
     fit = fitted.fit
-    held = (2.0 * fit.poles.imag) ** 2 * fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
+    held = (2.0 * fit.poles.imag) ** 2 * fit.residue_inverse[:, 1::2]
     return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, separation)))
 
 

@@ -18,8 +18,9 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.scatter import variance_of_groups
 from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.projection import pole_turns
 from identification.fit.equations.pruning import inverse_information
-from identification.fit.equations.refine import Fit, pole_turns
+from identification.fit.equations.refine import Fit
 from identification.fit.poly_reference import sorted_frfs
 
 _PRIOR_FREEDOM = 10.0
@@ -149,7 +150,7 @@ def _moved(
         "j,hjni,jnia->hna", weights.level[rows], left.reshape(hits, len(rows), n, 2), turns, optimize=True
     )
     steps = gradient.reshape(hits, 2 * n) @ inverse
-    gain = fit.pole_gain[rows, 1 : 2 * n : 2]
+    gain = fit.pole_gain[rows]
     own, by_poles = alone[:, :, 1 : 2 * n : 2], np.einsum("jnp,hp->hjn", gain, steps)
     joint, disagreement = _shared(own + by_poles, residues.imag * weights.level[rows, None], point[rows])
     both = np.sum(own**2 + 2.0 * own * by_poles, axis=0)
@@ -206,12 +207,9 @@ def _of_constants(
     fit: Fit, groups: list[_Sums], spread: FloatArray, plain: FloatArray, prior: FloatArray
 ) -> FloatArray:
     """Return the factor of each constant, those of a mode being shrunk to one another."""
-    n = len(fit.poles)
-    gain = fit.pole_gain[:, 1 : 2 * n : 2]
+    gain = fit.pole_gain
     found = np.einsum("jnp,pq,jnq->jn", gain, spread, gain, optimize=True)
-    expected = fit.linear_inverse[:, 1 : 2 * n : 2] + np.einsum(
-        "jnp,pq,jnq->jn", gain, plain, gain, optimize=True
-    )
+    expected = fit.residue_inverse[:, 1::2] + np.einsum("jnp,pq,jnq->jn", gain, plain, gain, optimize=True)
     freedom = np.zeros(len(found))
     for group in groups:
         np.add.at(found, group.rows, group.constants)
@@ -223,7 +221,7 @@ def _of_constants(
 
 def _of_held(fit: Fit, groups: list[_Sums], prior: FloatArray) -> FloatArray:
     """Return the same for constants with the poles held."""
-    expected = fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
+    expected = fit.residue_inverse[:, 1::2]
     found, freedom = np.zeros(expected.shape), np.zeros(len(expected))
     for group in groups:
         np.add.at(found, group.rows, group.held)

@@ -86,8 +86,8 @@ def lines_together(frfs: FrfSet, fitted: Fitted, density: FloatArray) -> FloatAr
 
 def _correlation(white: ComplexArray, lag: int) -> FloatArray:
     """Return the mean product of values ``lag`` lines apart over the FRFs, shape (n_lines - lag,) [-]."""
-    last = white.shape[1] - lag
-    return np.asarray(np.mean((white[:, :last].conj() * white[:, lag:]).real, axis=0))
+    last, parts = white.shape[1] - lag, white.view(np.float64).reshape(*white.shape, 2)
+    return np.asarray(np.einsum("jnc,jnc->n", parts[:, :last], parts[:, lag:]) / len(white))
 
 
 def _of_window_shaped_noise(fade: float, lag: int) -> float:

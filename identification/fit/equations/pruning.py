@@ -23,11 +23,10 @@ def constant_variance(fit: Fit) -> FloatArray:
     """
     if fit.residue_variance is not None:
         return np.asarray((2.0 * fit.poles.imag) ** 2 * fit.residue_variance)
-    columns = slice(1, 2 * len(fit.poles), 2)
-    gain = fit.pole_gain[:, columns]
+    gain = fit.pole_gain
     by_poles = np.einsum("jka,ab,jkb->jk", gain, pole_covariance(fit), gain, optimize=True)
     return np.asarray(
-        (2.0 * fit.poles.imag) ** 2 * (fit.linear_inverse[:, columns] + np.maximum(by_poles, 0.0))
+        (2.0 * fit.poles.imag) ** 2 * (fit.residue_inverse[:, 1::2] + np.maximum(by_poles, 0.0))
     )
 
 
@@ -58,7 +57,7 @@ def strength(fit: Fit) -> FloatArray:
 
     Without the mode it would be a chi-square of 2 n_frf degrees of freedom.
     """
-    held = fit.linear_inverse[:, : 2 * len(fit.poles)].reshape(len(fit.linear_inverse), -1, 2).mean(axis=2)
+    held = fit.residue_inverse.reshape(*fit.linear.residues.shape, 2).mean(axis=2)
     return np.asarray(np.sum(np.abs(fit.linear.residues) ** 2 / held, axis=0))
 
 

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.iteration import settled
 from identification.fit.equations.line_selection import Lines, selected_lines
+from identification.fit.equations.projection import (
+    Problem,
+    State,
+    Step,
+    carried,
+    pole_turns,
+    rising,
+    state_at,
+)
 from identification.fit.equations.residues import Residues, unpack
 
 _ITERATIONS = 40
@@ -32,16 +43,12 @@ class Fit:
     information : (2 n_modes, 2 n_modes) array
         Gauss-Newton information of (Re, Im) of the poles, interleaved, twice J^T J [s^2/rad^2].
     equations : State
-        Normal equations on all lines at the poles, residues free.
-    pole_gain : (n_frf, 2 n_modes + n_terms, 2 n_modes) array
-        Change of each FRF's linear unknowns per change of the poles.
-    linear_inverse : (n_frf, 2 n_modes + n_terms) array
-        Variance of each linear unknown with the poles held, for weights that are reciprocal variances.
+        Normal equations on all lines at the poles, residues free: what the properties below follow from.
     converged : bool
         Whether the iteration came to rest.
     residue_variance : (n_frf, n_modes) array, optional
         Variance of the imaginary part of each residue, everything fitted, where it does not follow from
-        ``pole_gain`` and ``linear_inverse``: residues held to rank one [m^2/(N s)^2].
+        ``pole_gain`` and ``residue_inverse``: residues held to rank one [m^2/(N s)^2].
     """
 
     poles: ComplexArray
@@ -49,32 +56,28 @@ class Fit:
     cost: float
     information: FloatArray
     equations: State
-    pole_gain: FloatArray
-    linear_inverse: FloatArray
     converged: bool
     residue_variance: FloatArray | None = None
 
+    @cached_property
+    def pole_gain(self) -> FloatArray:
+        """Change of the imaginary part of each residue per change of the poles, (n_frf, n_modes, 2 n_modes)."""
+        n, solution = len(self.poles), self.equations.step.solution
+        follow = self.equations.follow[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
+        turns = -pole_turns(solution, n)[:, None]
+        gain = follow[..., 0, None] * turns[..., 0, :]
+        gain += follow[..., 1, None] * turns[..., 1, :]
+        return np.asarray(gain.reshape(len(solution), n, 2 * n))
 
-@dataclass(frozen=True, eq=False)
-class Step:
-    """Everything at one set of poles that the next step needs.
+    @cached_property
+    def residue_inverse(self) -> FloatArray:
+        """Variance of both parts of each residue with the poles held, for weights that are reciprocal variances.
 
-    Parameters
-    ----------
-    cost : float
-        Weighted sum of squared misfits with the best linear unknowns [-].
-    solution : (n_frf, 2 n_modes + n_terms) array
-        Those unknowns.
-    normal : (2 n_modes, 2 n_modes) array
-        J^T J of (Re, Im) of the poles, interleaved [s^2/rad^2].
-    gradient : (2 n_modes,) array
-        J^T r [s/rad].
-    """
-
-    cost: float
-    solution: FloatArray
-    normal: FloatArray
-    gradient: FloatArray
+        Parts interleaved, (n_frf, 2 n_modes) [m^2/(N s)^2].
+        """
+        k = self.equations.step.solution.shape[1]
+        inverse = _inverse_diagonal(self.equations.products.gram[:, :k, :k])[:, : 2 * len(self.poles)]
+        return np.asarray(inverse / (2.0 * self.equations.level[:, None]))
 
 
 def refine(
@@ -119,123 +122,49 @@ def refine(
     Fit
         The refined model.
     """
-    problem = _Problem.of(*selected_lines(frfs, poles, weights), powers)
+    problem = Problem.of(*selected_lines(frfs, poles, weights), powers)
     whole = len(problem.axis.laplace) == len(frfs.frequency)
-    start = known if known is not None and whole else _at(problem, poles)
-    state, converged = _iterate(problem, start, iterations, (tolerance, enough))
+    start = known if known is not None and whole else state_at(problem, poles)
+    state, converged = settled(problem, start, iterations, (tolerance, enough))
     if whole:
         return _fit(problem, state, converged)
-    every = _Problem.of(Lines.of(frfs), weights, powers)
+    every = Problem.of(Lines.of(frfs), weights, powers)
     if tolerance < _POLISHED:
-        state, converged = _iterate(every, _at(every, state.poles), iterations, (tolerance, enough))
+        state, converged = settled(every, state_at(every, state.poles), iterations, (tolerance, enough))
         return _fit(every, state, converged)
-    return _fit(every, _at(every, state.poles), converged)
+    return _fit(every, state_at(every, state.poles), converged)
 
 
-@dataclass(frozen=True, eq=False)
-class _Problem:
-    """What stays the same from step to step: the lines, the data times their weights, the residual terms."""
-
-    axis: basis.Axis
-    data: normal_equations.Data
-    powers: tuple[int, ...]
-
-    @classmethod
-    def of(cls, lines: Lines, weights: normal_equations.Weights, powers: tuple[int, ...]) -> _Problem:
-        return cls(lines.axis, normal_equations.prepared(lines.values, weights), powers)
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """A step at its poles, with the normal equations it comes from.
-
-    Parameters
-    ----------
-    poles : (n_modes,) complex array
-        The poles [rad/s].
-    step : Step
-        Misfit, linear unknowns and the equations of the poles.
-    products : Grams
-        Products of the linear columns and then the slopes.
-    follow : (n_frf or 1, 2 n_modes + n_terms, 2 n_modes) array
-        How the linear unknowns follow the slope columns.
-    term_scale : (n_terms,) array
-        What a coefficient is multiplied by to become that of s^k in the receptance.
-    level : (n_frf,) array
-        Factor of each FRF in the weights [1 / unit of the FRFs squared].
-    """
-
-    poles: ComplexArray
-    step: Step
-    products: normal_equations.NormalEquations
-    follow: FloatArray
-    term_scale: FloatArray
-    level: FloatArray
-
-    @property
-    def cost(self) -> float:
-        """Weighted sum of squared misfits [-]."""
-        return self.step.cost
+def fit_at(
+    frfs: FrfSet,
+    poles: ComplexArray,
+    weights: normal_equations.Weights,
+    powers: tuple[int, ...],
+    converged: bool,
+) -> Fit:
+    """Return the fit at given poles, rising in frequency; parameters as for :func:`refine`."""
+    problem = Problem.of(Lines.of(frfs), weights, powers)
+    return _fit(problem, state_at(problem, poles), converged)
 
 
-def _iterate(
-    problem: _Problem, state: State, iterations: int, tolerance: tuple[float, float]
-) -> tuple[State, bool]:
-    """Return where the steps come to rest, and whether they do."""
-    damping = 1e-3
-    for _ in range(iterations):
-        trial_poles = state.poles + _solve_step(state.step, damping)
-        trial = _at(problem, decaying(trial_poles, state.poles, problem.axis.decay))
-        if trial.cost <= state.cost:
-            gain, rest = state.cost - trial.cost, max(tolerance[0] * state.cost, tolerance[1])
-            state, damping = trial, max(0.1 * damping, 1e-12)
-            if gain < rest:
-                return state, True
-        else:
-            damping *= 10.0
-            if damping > 1e8:
-                return state, True
-    return state, False
-
-
-def _solve_step(state: Step, damping: float) -> ComplexArray:
-    diagonal = np.diag(state.normal)
-    length = np.sqrt(np.maximum(diagonal, 1e-24 * diagonal.max() + 1e-200))
-    unit = state.normal / np.outer(length, length) + damping * np.eye(len(length))
-    step = np.linalg.solve(unit, state.gradient / length) / length
-    return np.asarray(step[0::2] + 1j * step[1::2])
-
-
-def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexArray:
-    """Keep trial poles decaying and Im > 0; go half-way to a border that would be crossed."""
-    real = np.where(trial.real < decay, trial.real, 0.5 * (poles.real + decay))
-    imag = np.where(trial.imag > 0.5 * poles.imag, trial.imag, 0.75 * poles.imag)
-    return np.asarray(real + 1j * imag)
-
-
-def _at(problem: _Problem, poles: ComplexArray) -> State:
-    """Project the linear unknowns out at given poles."""
-    columns = basis.build(problem.axis, poles, problem.powers)
-    products, level = normal_equations.form(columns.columns, problem.data), problem.data.weights.level
-    solution, follow = _projection(products, columns.n_linear)
-    return State(
-        poles,
-        _step(products, solution, follow, level, len(poles)),
-        products,
-        follow,
-        columns.term_scale,
-        level,
+def _fit(problem: Problem, state: State, converged: bool) -> Fit:
+    """Return the fit at a state, poles rising in frequency."""
+    state = rising(state)
+    return Fit(
+        state.poles,
+        unpack(state.step.solution, len(state.poles), state.term_scale, problem.powers),
+        state.cost,
+        2.0 * state.step.normal,
+        state,
+        converged,
     )
 
 
-def _projection(products: normal_equations.NormalEquations, k: int) -> tuple[FloatArray, FloatArray]:
-    """Return the linear solution, (n_frf, k), and how it follows the slope columns, (n_frf or 1, k, rest)."""
-    here, across = products.gram[:, :k, :k], products.gram[:, :k, k:]
-    if len(here) < len(products.cross):
-        solution = normal_equations.solve(here, products.cross[:, :k, None])[:, :, 0]
-        return solution, normal_equations.solve(here, across)
-    both = normal_equations.solve(here, np.concatenate([products.cross[:, :k, None], across], axis=2))
-    return both[:, :, 0], both[:, :, 1:]
+def evaluate(
+    frfs: FrfSet, poles: ComplexArray, weights: normal_equations.Weights, powers: tuple[int, ...]
+) -> Step:
+    """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
+    return state_at(Problem.of(*selected_lines(frfs, poles, weights), powers), poles).step
 
 
 def scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
@@ -254,19 +183,6 @@ def scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
     gradient = np.einsum("j,jni,jnia->jna", level, left, turns)
     normal = np.einsum("j,jnia,jnim,jnmb->jnab", level, turns, own, turns, optimize=True)
     return gradient, normal
-
-
-def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return what is left of each FRF along the slope columns, their products, and the turns to the poles.
-
-    The linear unknowns are projected out: (n_frf, n, 2), (n_frf or 1, n, 2, n, 2) and (n_frf, n, 2, 2).
-    """
-    gram, solution = state.products.gram, state.step.solution
-    n, k = len(state.poles), solution.shape[1]
-    across = gram[:, :k, k:]
-    projected = gram[:, k:, k:] - np.matmul(across.transpose(0, 2, 1), state.follow)
-    left = (state.products.cross[:, k:] - _carried(solution, across)).reshape(-1, n, 2)
-    return left, projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
 def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
@@ -292,96 +208,17 @@ def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
     return gradient, np.einsum("j,jni,jnim->jnm", level, turned, half, optimize=True)
 
 
-def _carried(solution: FloatArray, across: FloatArray) -> FloatArray:
-    """Return what the linear unknowns put on the slope columns, shape (n_frf, 2 n_modes)."""
-    if len(across) == 1:
-        return np.asarray(solution @ across[0])
-    return np.asarray(np.einsum("jk,jkm->jm", solution, across))
+def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what is left of each FRF along the slope columns, their products, and the turns to the poles.
 
-
-def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
-    """Return the 2 x 2 blocks that turn (Re, Im) of a pole's step into weights of its two slope columns.
-
-    The slope columns are derivatives by Re p; those by Im p are the same two crosswise, because the columns
-    are analytic in p. Shape (n_frf, n_modes, slope, Re or Im).
+    The linear unknowns are projected out: (n_frf, n, 2), (n_frf or 1, n, 2, n, 2) and (n_frf, n, 2, 2).
     """
-    a = solution[:, 0 : 2 * n_modes : 2]
-    b = solution[:, 1 : 2 * n_modes : 2]
-    return np.stack([np.stack([a, -b], axis=2), np.stack([b, a], axis=2)], axis=2)
-
-
-def evaluate(
-    frfs: FrfSet, poles: ComplexArray, weights: normal_equations.Weights, powers: tuple[int, ...]
-) -> Step:
-    """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
-    return _at(_Problem.of(*selected_lines(frfs, poles, weights), powers), poles).step
-
-
-def _step(
-    products: normal_equations.NormalEquations,
-    solution: FloatArray,
-    follow: FloatArray,
-    level: FloatArray,
-    n: int,
-) -> Step:
-    k = solution.shape[1]
-    cost = float(level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
-    between = products.gram[:, :k, k:]
-    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
-    turns = pole_turns(solution, n)
-    left = (products.cross[:, k:] - _carried(solution, between)).reshape(-1, n, 2)
-    gradient = np.einsum("j,jni,jnia->na", level, left, turns)
-    normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, level)
-    return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
-
-
-def _contract(projected: FloatArray, turns: FloatArray, level: FloatArray) -> FloatArray:
-    """Return sum_j level_j T_j^T S_j T_j, shape (2 n_modes, 2 n_modes)."""
-    n = turns.shape[1]
-    if len(projected) == 1:
-        pairs = np.einsum("j,jnia,jmkb->niamkb", level, turns, turns, optimize=True)
-        normal = np.einsum("nimk,niamkb->namb", projected[0], pairs)
-    else:
-        half = np.einsum("jnimk,jmkb->jnimb", projected, turns)
-        normal = np.einsum("j,jnia,jnimb->namb", level, turns, half, optimize=True)
-    return np.asarray(normal.reshape(2 * n, 2 * n))
-
-
-def fit_at(
-    frfs: FrfSet,
-    poles: ComplexArray,
-    weights: normal_equations.Weights,
-    powers: tuple[int, ...],
-    converged: bool,
-) -> Fit:
-    """Return the fit at given poles, rising in frequency; parameters as for :func:`refine`."""
-    problem = _Problem.of(Lines.of(frfs), weights, powers)
-    return _fit(problem, _at(problem, poles), converged)
-
-
-def _fit(problem: _Problem, state: State, converged: bool) -> Fit:
-    """Return the fit at a state, poles rising in frequency."""
-    n, solution = len(state.poles), state.step.solution
-    k = solution.shape[1]
-    order = np.argsort(np.abs(state.poles))
-    both = (2 * order[:, None] + np.arange(2)).ravel()
-    linear = np.concatenate([both, np.arange(2 * n, k)])
-    blocks = state.follow.reshape(len(state.follow), k, n, 2)
-    turns = pole_turns(solution, n)
-    gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
-    inverse = _inverse_diagonal(state.products.gram[:, :k, :k])
-    held = np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None])
-    rising = (np.diff(order) > 0).all()
-    return Fit(
-        state.poles[order],
-        unpack(solution[:, linear], n, state.term_scale, problem.powers),
-        state.cost,
-        2.0 * state.step.normal[np.ix_(both, both)],
-        state if rising else _at(problem, state.poles[order]),
-        gain.reshape(len(solution), k, 2 * n)[:, linear[:, None], both],
-        held[:, linear],
-        converged,
-    )
+    gram, solution = state.products.gram, state.step.solution
+    n, k = len(state.poles), solution.shape[1]
+    across = gram[:, :k, k:]
+    projected = gram[:, k:, k:] - np.matmul(across.transpose(0, 2, 1), state.follow)
+    left = (state.products.cross[:, k:] - carried(solution, across)).reshape(-1, n, 2)
+    return left, projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
 def _inverse_diagonal(gram: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import ComplexArray, FloatArray, row_blocks
 from acquisition.display import Displayed
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
@@ -85,4 +85,9 @@ def synthesise(axis: basis.Axis, poles: ComplexArray, linear: Residues) -> Compl
     columns = basis.build(axis, poles, linear.powers)
     parts = np.stack([linear.residues.real, linear.residues.imag], axis=2).reshape(len(linear.residues), -1)
     solution = np.hstack([parts, linear.terms / columns.term_scale])
-    return np.asarray(solution @ columns.linear.T)
+    values = np.empty((len(solution), len(axis.laplace)), np.complex128)
+    real, imaginary = np.array(columns.linear.real.T), np.array(columns.linear.imag.T)
+    for rows in row_blocks(values.shape):
+        values.real[rows] = solution[rows] @ real
+        values.imag[rows] = solution[rows] @ imaginary
+    return values

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import ndimage
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, row_blocks, squared
 from acquisition.frfs.frf import FrfSet
 from identification.arrangement import unsigned
 from identification.fit.equations.background import gains
@@ -126,24 +126,34 @@ def common_noise(
         Noise variance of every value, common part included [unit of the FRFs squared].
     """
     groups = hit_groups(frfs)
-    own, each = np.array(variance), []
+    own, each = variance, []
     for rows in groups:
         if leakage.follows(frfs.line_shape):
             b = np.full(way.shape[1], leakage.shared(way, residual, variance))
         else:
-            b = _factor_variance(way[rows], residual[rows], variance[rows])
+            b = _factor_variance(way, residual, variance, rows)
         each.append(b)
-        own[rows] = np.maximum(variance[rows] - b * np.abs(way[rows]) ** 2, _OWN * variance[rows])
+        if b.any():
+            own = np.array(own) if own is variance else own
+            own[rows] = np.maximum(variance[rows] - b * squared(way[rows]), _OWN * variance[rows])
     return CommonNoise(groups, tuple(each), own)
 
 
-def _factor_variance(model: ComplexArray, residual: ComplexArray, variance: FloatArray) -> FloatArray:
+def _factor_variance(
+    model: ComplexArray, residual: ComplexArray, variance: FloatArray, rows: IntArray
+) -> FloatArray:
     """Return b at every line: with unit vector u along h, E |u^H r|^2 = 1 + b m in units of the noise."""
     n_lines = model.shape[1]
-    white = model / np.sqrt(variance)
-    power = np.maximum(np.sum(np.abs(white) ** 2, axis=0), np.finfo(float).tiny)
-    along = np.sum(white.conj() * residual / np.sqrt(variance), axis=0) / np.sqrt(power)
-    slope = np.maximum(power - np.sum(np.abs(white) ** 4, axis=0) / power, 0.0)
+    power, fourth, along = np.zeros(n_lines), np.zeros(n_lines), np.zeros(n_lines, np.complex128)
+    for block in row_blocks((len(rows), n_lines)):
+        h, v = model[rows[block]], variance[rows[block]]
+        each = squared(h) / v
+        power += each.sum(axis=0)
+        fourth += np.sum(each**2, axis=0)
+        along += np.sum(h.conj() * residual[rows[block]] / v, axis=0)
+    power = np.maximum(power, np.finfo(float).tiny)
+    along /= np.sqrt(power)
+    slope = np.maximum(power - fourth / power, 0.0)
     if n_lines < 3 * len(_DIFFERENCE):
         return np.zeros(n_lines)
     rough = np.abs(ndimage.convolve1d(along, _DIFFERENCE, mode="reflect")) ** 2
@@ -165,7 +175,7 @@ def beyond_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> BoolArray:
     """Tell which modes of a fit stand out of what noise common to all outputs can make, shape (n_modes,).
 
     Without the mode, what the common noise explains of the rest is taken out; the mode must still explain more
-    than noise can. Modes so strong that no common noise reaches them are not asked.
+    than noise can. Modes so strong that no common noise reaches them are not asked, and none where there is none.
 
     Parameters
     ----------
@@ -184,8 +194,11 @@ def beyond_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> BoolArray:
     held = inflation(weights.fade, decay_over_record(frfs, fit.poles))[0]
     doubtful = strength(fit) < limit * held * max(len(g) for g in groups)
     residual = left_over(frfs, fit)
-    way = direction(frfs, fit.poles, fit.linear)
+    leaked = leakage.leaked(frfs, fit.poles, fit.linear.residues)
+    way = frfs.values - residual if leaked is None else leaked
     noise = common_noise(frfs, way, residual, 1.0 / weights.full)
+    if not any(variance.any() for variance in noise.variance):
+        return stands
     for mode in np.flatnonzero(doubtful):
         rest = np.delete(np.arange(len(fit.poles)), mode)
         linear = replace(fit.linear, residues=fit.linear.residues[:, rest])

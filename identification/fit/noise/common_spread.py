@@ -12,8 +12,9 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.projection import pole_turns
 from identification.fit.equations.pruning import inverse_information
-from identification.fit.equations.refine import Fit, evaluate, pole_turns
+from identification.fit.equations.refine import Fit
 from identification.fit.noise.common import common_noise, direction
 
 
@@ -49,8 +50,7 @@ def common_factors(
         together, alone = pulls(fit, weights, columns, rows, way[rows])
         half = np.sqrt(capped)[:, None] * together
         extra += (half.conj().T @ half).real - np.diag(capped @ alone)
-    normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal
-    inverse = inverse_information(normal)
+    inverse = inverse_information(fit.equations.step.normal)
     added = np.einsum("ab,bc,ca->a", inverse, extra, inverse) / np.diag(inverse)
     return np.asarray(np.maximum(1.0 + added, 1.0).reshape(n, 2).mean(axis=1))
 
@@ -67,31 +67,30 @@ def pulls(
     turns = pole_turns(np.stack([residues.real, residues.imag], axis=2).reshape(len(rows), -1), n)
     size = weights.level[rows, None] * model
     if len(weights.lines) == 1:
-        return _pull(_free_slopes(columns, weights.lines), turns, size)
+        return _pull(_free_slopes(columns, fit.equations.follow[0], weights.lines[0]), turns, size)
     together = np.zeros((model.shape[1], 2 * n), np.complex128)
     alone = np.zeros((model.shape[1], 2 * n))
     for j, row in enumerate(rows):
-        own = _pull(_free_slopes(columns, weights.lines[[row]]), turns[[j]], size[[j]])
+        slopes = _free_slopes(columns, fit.equations.follow[row], weights.lines[row])
+        own = _pull(slopes, turns[[j]], size[[j]])
         together += own[0]
         alone += own[1]
     return together, alone
 
 
-def _free_slopes(columns: basis.Basis, lines: FloatArray) -> ComplexArray:
+def _free_slopes(columns: basis.Basis, follow: FloatArray, lines: FloatArray) -> ComplexArray:
     """Return the conjugate slopes times weights, (n_lines, 2 n_modes), the linear columns projected out.
 
     Parameters
     ----------
     columns : Basis
         The columns.
-    lines : (1, n_lines) array
+    follow : (n_linear, 2 n_modes) array
+        How the linear unknowns follow the slopes.
+    lines : (n_lines,) array
         Weights [-].
     """
-    k = columns.linear.shape[1]
-    both = np.hstack([columns.linear, columns.slopes])
-    gram = normal_equations.products(np.concatenate([both.real, both.imag]), lines)
-    follow = normal_equations.solve(gram[:, :k, :k], gram[:, :k, k:])[0]
-    return np.asarray(lines[0][:, None] * (columns.slopes - columns.linear @ follow).conj())
+    return np.asarray(lines[:, None] * (columns.slopes - columns.linear @ follow).conj())
 
 
 def _pull(slopes: ComplexArray, turns: FloatArray, size: ComplexArray) -> tuple[ComplexArray, FloatArray]:

@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy import ndimage, stats
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import ComplexArray, FloatArray, row_blocks, squared
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import normal_equations
 from identification.fit.equations.normal_equations import Weights
+from identification.fit.noise.differences import power_of_differences
 
 _CHANCE = 1e-4
 _ROUNDS = 3
@@ -22,7 +23,7 @@ _PIECE = 16  # lines over which the scatter is averaged before the median
 # coherence near zero gives millions. Twice as much lets one line raise its whole stretch.
 _SPIKE = 10.0
 _MORE = 1.5  # by which a stretch must exceed the law: two standard deviations where each line has one degree of freedom
-_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
+_FEWEST = 15  # lines under which fourth differences are too few to tell the scatter
 
 
 def window_length(n_lines: int) -> int:
@@ -32,7 +33,7 @@ def window_length(n_lines: int) -> int:
 
 def quiet_floor(values: ComplexArray) -> FloatArray:
     """Return the smallest variance worth believing, per FRF, shape (n_frf, 1) [unit squared]."""
-    power = np.mean(np.abs(values) ** 2, axis=1, keepdims=True)
+    power = np.mean(squared(values), axis=1, keepdims=True)
     return np.asarray(_QUIET**2 * np.maximum(power, 1e-12 * power.max()))
 
 
@@ -53,11 +54,11 @@ def scatter(residual: ComplexArray) -> FloatArray:
         Data minus model [unit of the FRFs].
     """
     n_lines = residual.shape[1]
-    if n_lines < 3 * len(_DIFFERENCE):
-        return np.asarray(np.mean(np.abs(residual) ** 2, axis=1))
-    rough = ndimage.convolve1d(residual, _DIFFERENCE, axis=1, mode="reflect")[:, 2:-2]
+    if n_lines < _FEWEST:
+        return np.asarray(np.mean(squared(residual), axis=1))
+    rough = power_of_differences(residual, 4)
     pieces = max(1, rough.shape[1] // _PIECE)
-    power = np.abs(rough[:, : pieces * (rough.shape[1] // pieces)]) ** 2
+    power = rough[:, : pieces * (rough.shape[1] // pieces)]
     return np.asarray(np.median(power.reshape(len(power), pieces, -1).mean(axis=2), axis=1))
 
 
@@ -101,11 +102,11 @@ def from_residual(
         Local variances of the law chosen [unit squared].
     """
     n_lines = residual.shape[1]
-    power = np.abs(residual) ** 2
-    free = np.broadcast_to(np.maximum(1.0 - absorbed, 0.02), power.shape)
+    power = squared(residual)
+    free = np.maximum(1.0 - absorbed, 0.02)
     level = np.maximum(power.sum(axis=1) / free.sum(axis=1), floor[:, 0])
     window = window_length(n_lines)
-    local = np.maximum(local_mean(power, window) / local_mean(np.array(free), window), floor)
+    local = np.maximum(local_mean(power, window) / local_mean(free, window), floor)
     colour = np.log(local / level[:, None])
     common = np.log(np.mean(local / level[:, None], axis=0, keepdims=True))
     if n_lines < 2 * window or np.mean(colour**2) < 2.5 / window:
@@ -115,10 +116,11 @@ def from_residual(
     else:
         lines = np.exp(-colour)
     weights = Weights(1.0 / level, lines)
-    grown = np.maximum(_levelled(power / free, np.abs(model) ** 2, _over_all_lines), floor)
-    white = np.broadcast_to(level[:, None], power.shape)
-    gain = _likelihood(power / free, grown) - _likelihood(power / free, white)
-    better = _likelihood(power / free, grown) > _likelihood(power / free, 1.0 / weights.full)
+    power /= free
+    grown = np.maximum(_levelled(power, squared(model), _over_all_lines), floor)
+    of_grown = _likelihood(power, grown)
+    gain = of_grown - _likelihood(power, level[:, None])
+    better = of_grown > _likelihood(power, 1.0 / weights.full)
     if better and 2.0 * gain > stats.chi2.isf(_CHANCE, len(power)):
         mean = np.exp(np.mean(np.log(grown), axis=1))
         weights = Weights(1.0 / mean, mean[:, None] / grown)
@@ -135,8 +137,8 @@ def grown_locally(
     """
     free = np.maximum(1.0 - absorbed, 0.02)
     window = window_length(residual.shape[1])
-    power = np.abs(residual) ** 2 / free
-    variance = np.maximum(_levelled(power, np.abs(model) ** 2, lambda m: local_mean(m, window)), floor)
+    power = squared(residual) / free
+    variance = np.maximum(_levelled(power, squared(model), lambda m: local_mean(m, window)), floor)
     variance = np.maximum(variance * np.mean(power / variance, axis=1, keepdims=True), floor)
     level = 1.0 / np.exp(np.mean(np.log(variance), axis=1))
     return Weights(level, 1.0 / (variance * level[:, None])), variance
@@ -148,7 +150,8 @@ def _over_all_lines(values: FloatArray) -> FloatArray:
 
 def _likelihood(power: FloatArray, variance: FloatArray) -> float:
     """Return the logarithm of the likelihood of circular Gaussian residuals of such power."""
-    return -float(np.sum(np.log(variance) + power / variance))
+    logarithms = float(np.sum(np.log(variance))) * power.size / variance.size
+    return -logarithms - float(np.sum(power / variance))
 
 
 def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
@@ -171,13 +174,13 @@ def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
         if frfs.averages is None:
             return np.maximum(raw, quiet_floor(frfs.values))
     elif frfs.coherence is not None:
-        squared = np.clip(frfs.coherence, 1e-6, 1.0)
+        coherent = np.clip(frfs.coherence, 1e-6, 1.0)
         count = np.ones(len(frfs.values)) if frfs.averages is None else np.maximum(1.0, frfs.averages)
-        raw = np.abs(frfs.values) ** 2 * (1.0 - squared) / squared / count[:, None]
+        raw = squared(frfs.values) * (1.0 - coherent) / coherent / count[:, None]
     else:
         return None
     window = window_length(raw.shape[1])
-    levelled = _levelled(raw, np.abs(model) ** 2, lambda m: local_mean(m, window))
+    levelled = _levelled(raw, squared(model), lambda m: local_mean(m, window))
     return np.maximum(_raised(levelled, raw), quiet_floor(frfs.values))
 
 
@@ -204,6 +207,16 @@ def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], F
     mean : function
         Mean over the lines that share a and b: those nearby, or all.
     """
+    levelled = np.empty_like(raw)
+    for rows in row_blocks(raw.shape):
+        levelled[rows] = _levelled_rows(raw[rows], power[rows], mean)
+    return levelled
+
+
+def _levelled_rows(
+    raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Return the same of some FRFs."""
     tiny = np.finfo(float).tiny
     size = np.maximum(raw.mean(axis=1, keepdims=True), tiny)
     raw, power = raw / size, power / np.maximum(power.mean(axis=1, keepdims=True), tiny)

@@ -19,26 +19,27 @@ _LEAST_FREE = 0.02  # part of the values that a fit leaves free at the least
 
 def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
     """Return data minus model, shape (n_frf, n_lines) [unit of the FRFs]."""
-    return np.asarray(frfs.values - synthesise(basis.Axis.of(frfs), fit.poles, fit.linear))
+    model = synthesise(basis.Axis.of(frfs), fit.poles, fit.linear)
+    return np.subtract(frfs.values, model, out=model)
 
 
-def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
+def search_weights(frfs: FrfSet, fit: Fit, residual: ComplexArray | None = None) -> Weights:
     """Weigh by the scatter from line to line, which does not mind what the model still lacks.
 
     Where the data carry variance or coherence, the lines weigh in common as these say: noise of the force
-    is larger on a peak.
+    is larger on a peak. What the fit leaves, ``residual``, is computed where it is not given.
     """
-    residual = left_over(frfs, fit)
+    residual = left_over(frfs, fit) if residual is None else residual
     leaked = leakage.leaked(frfs, fit.poles, fit.linear.residues)
     if leaked is not None:
         free = max(1.0 - _unknowns(fit) / (2 * len(frfs.frequency)), _LEAST_FREE)
         return _of_leakage(frfs, np.abs(residual) ** 2 / free, leaked)
-    known = levels.from_statistics(frfs, frfs.values - residual)
+    known = _stated(frfs, residual)
     shape = np.ones((1, len(frfs.frequency)))
     if known is not None:
         power = np.log(known)
         shape = np.exp(np.mean(power - power.mean(axis=1, keepdims=True), axis=0, keepdims=True))
-    even = residual / np.sqrt(shape)
+    even = residual if known is None else residual / np.sqrt(shape)
     fade = window_shaped.decay_over_record(even)
     free = 1.0 - _unknowns(fit) / (2 * len(frfs.frequency))
     level = levels.scatter(even) / window_shaped.roughness(fade, 4) / max(free, _LEAST_FREE)
@@ -53,6 +54,13 @@ def _of_leakage(frfs: FrfSet, power: FloatArray, leaked: ComplexArray) -> Weight
     variance = np.maximum(leakage.levelled(power, np.abs(leaked) ** 2, start)[0], floor)
     level = 1.0 / np.exp(np.mean(np.log(variance), axis=1))
     return Weights(level, 1.0 / (variance * level[:, None]))
+
+
+def _stated(frfs: FrfSet, residual: ComplexArray) -> FloatArray | None:
+    """Return the variances that came with the data, or None where none did."""
+    if frfs.variance is None and frfs.coherence is None:
+        return None
+    return levels.from_statistics(frfs, frfs.values - residual)
 
 
 def _unknowns(fit: Fit) -> float:
@@ -77,7 +85,7 @@ def noise_weights(
         weights = _of_leakage(frfs, np.abs(residual) ** 2 / np.maximum(1.0 - absorbed, _LEAST_FREE), leaked)
         return weights, 1.0 / weights.full, False
     fade = window_shaped.decay_over_record(residual)
-    known = levels.from_statistics(frfs, frfs.values - residual)
+    known = _stated(frfs, residual)
     floor = levels.quiet_floor(frfs.values)
     if known is None:
         of_residual = levels.from_residual if frfs.line_shape is None else levels.grown_locally

@@ -11,18 +11,14 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
-from scipy import ndimage, optimize
+from scipy import optimize
 
 from acquisition.arrays import ComplexArray, FloatArray
+from identification.fit.noise.differences import power_of_differences
 
 _STRONGEST = 40.0
 _PIECE = 16
 _CERTAIN = 2.0  # four standard deviations of the ratio below, for steady noise
-
-
-def _stencil(order: int) -> FloatArray:
-    signs = [(-1.0) ** k * comb(order, k) for k in range(order + 1)]
-    return np.asarray(np.array(signs) / np.sqrt(comb(2 * order, order)))
 
 
 def roughness(fade: float, order: int) -> float:
@@ -65,9 +61,9 @@ def decay_over_record(residual: ComplexArray) -> float:
 
 def _pieces(residual: ComplexArray, order: int) -> FloatArray:
     """Return mean squares of differences over stretches of lines, shape (n_frf, n_pieces)."""
-    rough = ndimage.convolve1d(residual, _stencil(order), axis=1, mode="reflect")[:, 2:-2]
-    whole = rough.shape[1] // _PIECE * _PIECE
-    power = np.abs(rough[:, :whole]) ** 2
+    edge = (4 - order) // 2  # the same lines for both orders
+    rough = power_of_differences(residual[:, edge : residual.shape[1] - edge], order)
+    power = rough[:, : rough.shape[1] // _PIECE * _PIECE]
     return np.asarray(np.maximum(power.reshape(len(power), -1, _PIECE).mean(axis=2), np.finfo(float).tiny))
 
 

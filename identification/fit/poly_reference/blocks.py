@@ -19,15 +19,19 @@ def paired(interleaved: FloatArray) -> ComplexArray:
 
 
 def times_blocks(matrix: FloatArray, blocks: FloatArray) -> FloatArray:
-    """Return matrix times blockdiag(blocks), (j, k, 2 n) by (j, n, 2, 2)."""
-    parts = matrix.reshape(*matrix.shape[:2], matrix.shape[2] // 2, 2)
-    return np.asarray(np.einsum("jkna,jnab->jknb", parts, blocks, optimize=True).reshape(matrix.shape))
+    """Return matrix times blockdiag(blocks), (..., k, 2 n) by (..., n, 2, 2)."""
+    parts = matrix.reshape(*matrix.shape[:-1], matrix.shape[-1] // 2, 2, 1)
+    wide = blocks[..., None, :, :, :]
+    product = parts[..., 0, :] * wide[..., 0, :] + parts[..., 1, :] * wide[..., 1, :]
+    return np.asarray(product.reshape(*product.shape[:-2], matrix.shape[-1]))
 
 
 def blocks_times(blocks: FloatArray, matrix: FloatArray) -> FloatArray:
-    """Return blockdiag(blocks)^T times matrix, (j, n, 2, 2) by (j, 2 n, q)."""
-    parts = matrix.reshape(len(matrix), matrix.shape[1] // 2, 2, matrix.shape[2])
-    return np.asarray(np.einsum("jnab,jnaq->jnbq", blocks, parts, optimize=True).reshape(matrix.shape))
+    """Return blockdiag(blocks)^T times matrix, (..., n, 2, 2) by (..., 2 n, q)."""
+    parts = matrix.reshape(*matrix.shape[:-2], matrix.shape[-2] // 2, 2, 1, matrix.shape[-1])
+    tall = blocks[..., None]
+    product = tall[..., 0, :, :] * parts[..., 0, :, :] + tall[..., 1, :, :] * parts[..., 1, :, :]
+    return np.asarray(product.reshape(*product.shape[:-3], *matrix.shape[-2:]))
 
 
 def inverses(normal: FloatArray) -> FloatArray:

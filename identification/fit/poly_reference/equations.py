@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, row_blocks
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
 from identification.fit.equations.line_selection import selected_lines
-from identification.fit.equations.refine import pole_turns
+from identification.fit.equations.projection import carried, pole_turns
 from identification.fit.poly_reference.blocks import blocks_times, inverses, paired, rotations, times_blocks
 from identification.fit.poly_reference.places import Sorted
 
@@ -78,6 +79,7 @@ class Projected:
 
     The columns left are the modes held to rank one, then the slopes by all poles. Eliminated are the free
     modes and the residual terms, whose factors are ``alone`` less ``each`` times those of the columns left.
+    Of ``gram`` and ``each`` there is one for all FRFs where their lines weigh alike.
     """
 
     gram: FloatArray
@@ -86,6 +88,20 @@ class Projected:
     alone: FloatArray
     each: FloatArray
     term_scale: FloatArray
+
+    def alike(self, places: Sorted, block: slice = slice(None)) -> Iterator[tuple[FloatArray, IntArray, int]]:
+        """Yield sets of FRFs of one column that share their products: these, the FRFs and the column.
+
+        Only FRFs of a block of rows count.
+        """
+        first, last, _ = block.indices(places.shape[0])
+        inside = (places.row >= first) & (places.row < last)
+        if len(self.gram) == 1:
+            for column in range(places.shape[1]):
+                yield self.gram[0], np.flatnonzero(inside & (places.column == column)), column
+        else:
+            for number in np.flatnonzero(inside):
+                yield self.gram[number], np.array([number]), int(places.column[number])
 
 
 def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
@@ -98,12 +114,10 @@ def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
     p, k = normal_equations.form(both, data), 2 * n_held + columns.slopes.shape[1]
     follow = normal_equations.solve(p.gram[:, k:, k:], p.gram[:, k:, :k])
     alone = normal_equations.solve(p.gram[:, k:, k:], p.cross[:, k:, None])[:, :, 0]
-    each = np.broadcast_to(follow, (len(p.cross), *follow.shape[1:]))
     gram = p.gram[:, :k, :k] - np.matmul(p.gram[:, :k, k:], follow)
-    cross = p.cross[:, :k] - np.einsum("jt,jtk->jk", p.cross[:, k:], each)
+    cross = p.cross[:, :k] - carried(p.cross[:, k:], follow)
     power = weights.level @ (p.power - np.einsum("jt,jt->j", p.cross[:, k:], alone))
-    gram = np.broadcast_to(gram, (len(p.cross), k, k))
-    return Projected(gram, cross, float(power), alone, each, columns.term_scale)
+    return Projected(gram, cross, float(power), alone, follow, columns.term_scale)
 
 
 def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step:
@@ -118,28 +132,16 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     share : (n_columns, n_held) complex array
         Participations [-].
     """
-    places, level = problem.places, problem.weights.level
     n_held = share.shape[1]
-    m, left = 2 * n_held, project(problem, poles, n_held)
-    own = rotations(share)[places.column]
-    right = times_blocks(left.gram[:, :, :m], own)
-    held, long = _shapes(problem, left, own, right[:, :m])
-    here = long[places.row]
+    m, left, own = 2 * n_held, project(problem, poles, n_held), rotations(share)
+    held, long = _shapes(problem, left, own)
+    here = long[problem.places.row]
     factors, cost = _factors(problem, left, own, here)
-    alone = left.alone - np.einsum("jtk,jk->jt", left.each[:, :, :m], factors)
+    alone = left.alone - carried(factors, left.each.transpose(0, 2, 1)[:, :m])
     n_own = 2 * (len(poles) - n_held)
     every = np.hstack([factors, alone[:, :n_own]])
-    steps = _local_slopes(every, here, len(poles), n_held)
-    across = steps.transpose(0, 2, 1)
-    lacking = left.cross - np.einsum("jkm,jm->jk", left.gram[:, :, :m], factors)
-    normal, gradient, coupling = _gathered(
-        problem,
-        np.matmul(across, np.matmul(left.gram, steps)) * level[:, None, None],
-        np.einsum("jpk,jk->jp", across, lacking) * level[:, None],
-        np.matmul(across, right) * level[:, None, None],
-    )
-    follow = np.matmul(held, coupling.transpose(0, 2, 1))
-    normal = normal - np.einsum("ipm,imq->pq", coupling, follow, optimize=True)
+    turns = np.concatenate([rotations(paired(here)), pole_turns(every, len(poles))], axis=1)
+    normal, gradient, follow = _gathered(problem, left, own, factors, turns, held)
     return Step(
         cost=cost,
         long=long,
@@ -152,85 +154,109 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     )
 
 
-def _shapes(
-    problem: Problem, left: Projected, own: FloatArray, right: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _shapes(problem: Problem, left: Projected, own: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the inverse of each row's normal matrix and its best shape components."""
-    level, m = problem.weights.level, right.shape[-1]
-    normal = summed(problem.places, level[:, None, None] * blocks_times(own, right))
-    target = summed(problem.places, level[:, None] * blocks_times(own, left.cross[:, :m, None])[:, :, 0])
-    held = inverses(normal)
-    return held, np.einsum("imk,ik->im", held, target)
+    places, m = problem.places, 2 * own.shape[1]
+    held, long = np.empty((places.shape[0], m, m)), np.empty((places.shape[0], m))
+    for block in row_blocks((places.shape[0], m**2)):
+        normal, target = np.zeros(held[block].shape), np.zeros(long[block].shape)
+        for gram, mine, column in left.alike(places, block):
+            rows, level = places.row[mine] - block.start, problem.weights.level[mine]
+            inner = blocks_times(own[column], times_blocks(gram[:m, :m], own[column]))
+            normal[rows] += level[:, None, None] * inner
+            target[rows] += level[:, None] * times_blocks(left.cross[mine, :m], own[column])
+        held[block] = inverses(normal)
+        long[block] = np.matmul(held[block], target[:, :, None])[:, :, 0]
+    return held, long
 
 
 def _factors(
     problem: Problem, left: Projected, own: FloatArray, here: FloatArray
 ) -> tuple[FloatArray, float]:
     """Return what each FRF's columns held to rank one are multiplied by, (n_frf, 2 n_held), and the misfit."""
-    n_held = own.shape[1]
-    factors = np.einsum("jnab,jnb->jna", own, here.reshape(-1, n_held, 2)).reshape(-1, 2 * n_held)
-    each = np.einsum("jk,jk->j", left.cross[:, : 2 * n_held], factors)
-    return factors, max(left.power - float(each @ problem.weights.level), 0.0)
-
-
-def summed(places: Sorted, values: FloatArray) -> FloatArray:
-    """Return sums over the FRFs of each row, (n_rows, ...): within a column no row occurs twice."""
-    total = np.zeros((places.shape[0], *values.shape[1:]))
-    for column in range(places.shape[1]):
-        mine = np.flatnonzero(places.column == column)
-        total[places.row[mine]] += values[mine]
-    return total
-
-
-def _local_slopes(factors: FloatArray, long: FloatArray, n_modes: int, n_held: int) -> FloatArray:
-    """Return what steps of the poles and of the FRF's own participations put on the columns left.
-
-    Shape (n_frf, 2 n_held + 2 n_modes, 2 n_modes + 2 n_held).
-    """
-    m, q = 2 * n_held, 2 * n_modes
-    steps = np.zeros((len(factors), m + q, q + m))
-    by_pole, by_share = pole_turns(factors, n_modes), rotations(paired(long))
-    poles, modes = 2 * np.arange(n_modes), 2 * np.arange(n_held)
-    for a in range(2):
-        for b in range(2):
-            steps[:, m + poles + a, poles + b] = by_pole[:, :, a, b]
-            steps[:, modes + a, q + modes + b] = by_share[:, :, a, b]
-    return steps
+    each = own[problem.places.column].transpose(0, 1, 3, 2)
+    factors = times_blocks(here[:, None, :], each)[:, 0]
+    gain = np.einsum("jk,jk->j", left.cross[:, : factors.shape[1]], factors)
+    return factors, max(left.power - float(gain @ problem.weights.level), 0.0)
 
 
 def _gathered(
-    problem: Problem, local: FloatArray, slope: FloatArray, lean: FloatArray
+    problem: Problem,
+    left: Projected,
+    own: FloatArray,
+    factors: FloatArray,
+    turns: FloatArray,
+    held: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Sum what each FRF says of the poles and of its own reference into all parameters."""
-    places, m = problem.places, lean.shape[-1]
-    q = local.shape[-1] - m
-    n_rows, n_columns = places.shape
-    total = q + m * n_columns
-    normal, gradient = np.zeros((total, total)), np.zeros(total)
-    coupling = np.zeros((n_rows, total, m))
-    normal[:q, :q], gradient[:q] = local[:, :q, :q].sum(axis=0), slope[:, :q].sum(axis=0)
-    coupling[:, :q] = summed(places, lean[:, :q])
-    for column in range(n_columns):
-        mine, part = places.column == column, slice(q + m * column, q + m * (column + 1))
-        block = local[mine].sum(axis=0)
-        normal[:q, part], normal[part, :q] = block[:q, q:], block[q:, :q]
-        normal[part, part], gradient[part] = block[q:, q:], slope[mine, q:].sum(axis=0)
-        coupling[places.row[mine], part] = lean[mine, q:]
+    """Sum what each FRF says of the poles and of its own reference into all parameters, shapes eliminated.
+
+    Parameters
+    ----------
+    problem, left : Problem and Projected
+        The data, and their normal equations at given poles.
+    own : (n_columns, n_held, 2, 2) array
+        Participations [-].
+    factors : (n_frf, 2 n_held) array
+        What the columns held to rank one are multiplied by.
+    turns : (n_frf, n_held + n_modes, 2, 2) array
+        What steps of the FRF's own participations and of the poles put on the columns left.
+    held : (n_rows, 2 n_held, 2 n_held) array
+        Inverse of each row's own normal matrix.
+
+    Returns
+    -------
+    normal, gradient, follow : (n_parameters, n_parameters), (n_parameters,) and (n_rows, 2 n_held, n_parameters)
+    """
+    places, m = problem.places, factors.shape[1]
+    q = left.cross.shape[1] - m
     keep = np.concatenate([np.ones(q, bool), np.repeat(problem.free, 2, axis=1).ravel()])
-    return normal[np.ix_(keep, keep)], gradient[keep], coupling[:, keep]
+    kept, total = np.cumsum(keep) - 1, len(keep)
+    normal, gradient = np.zeros((total, total)), np.zeros(total)
+    eliminated = np.zeros((int(keep.sum()), int(keep.sum())))
+    follow = np.empty((places.shape[0], m, len(eliminated)))
+    for block in row_blocks((places.shape[0], m * len(eliminated))):
+        coupling = np.zeros((len(held[block]), len(eliminated), m))
+        for gram, mine, column in left.alike(places, block):
+            share = q + m * column + np.arange(m)
+            at, free = np.concatenate([share, np.arange(q)]), np.flatnonzero(keep[share])
+            weighted = problem.weights.level[mine, None, None, None] * turns[mine]
+            normal[np.ix_(at, at)] += _turned(gram, turns[mine], weighted)
+            lacking = left.cross[mine] - factors[mine] @ gram[:m]
+            gradient[at] += times_blocks(lacking[:, None], weighted)[:, 0].sum(axis=0)
+            lean = blocks_times(weighted, times_blocks(gram[:, :m], own[column])[None])
+            rows = places.row[mine] - block.start
+            coupling[rows, :q] += lean[:, m:]
+            coupling[rows[:, None], kept[share[free]]] = lean[:, free]
+        follow[block] = np.matmul(held[block], coupling.transpose(0, 2, 1))
+        eliminated += np.tensordot(coupling, follow[block], axes=((0, 2), (0, 1)))
+    return normal[np.ix_(keep, keep)] - eliminated, gradient[keep], follow
 
 
-def residue_gain(problem: Problem, step: Step, share: ComplexArray) -> FloatArray:
-    """Return the change of Im R_ij per parameter, shapes following, shape (n_frf, n_held, n_parameters)."""
+def _turned(gram: FloatArray, turns: FloatArray, weighted: FloatArray) -> FloatArray:
+    """Return sum_j T_j^T G W_j over FRFs that share G, T_j and W_j being block diagonal, shape as ``gram``."""
+    if len(turns) == 1:
+        return blocks_times(turns[0], times_blocks(gram, weighted[0]))
+    n, total = turns.shape[1], np.zeros(gram.shape)
+    pairs = turns.reshape(len(turns), -1).T @ weighted.reshape(len(turns), -1)
+    pairs, blocks = pairs.reshape(n, 2, 2, n, 2, 2), total.reshape(n, 2, n, 2)
+    for i in range(2):
+        for k in range(2):
+            blocks += gram[i::2, None, k::2, None] * pairs[:, i, :, :, k, :]
+    return total
+
+
+def residue_gain(problem: Problem, step: Step, share: ComplexArray, column: int) -> FloatArray:
+    """Return the change of Im R_ij per parameter, shapes following, for the FRFs of a column, in their order.
+
+    Shape (n, n_held, n_parameters).
+    """
     places, n_held = problem.places, share.shape[1]
-    q, m = 2 * step.residues.shape[1], 2 * n_held
-    own = rotations(share)[places.column]
-    moved = -step.follow[places.row].reshape(len(own), n_held, 2, -1)
-    gain = np.einsum("jnb,jnbp->jnp", own[:, :, 1], moved)
-    by_share = rotations(paired(step.long))[places.row]
-    wide = np.zeros((len(own), n_held, m * places.shape[1]))
-    rows, modes = np.arange(len(own))[:, None], np.arange(n_held)[None, :]
+    rows, own = places.row[places.column == column], rotations(share[column])[:, 1]
+    moved = step.follow[rows].reshape(len(rows), n_held, 2, -1)
+    gain = -(own[:, 0, None] * moved[:, :, 0] + own[:, 1, None] * moved[:, :, 1])
+    modes = np.flatnonzero(problem.free[column])
+    at = 2 * (step.residues.shape[1] + np.count_nonzero(problem.free[:column]) + np.arange(len(modes)))
+    by_share = rotations(paired(step.long))[rows[:, None], modes, 1]
     for part in range(2):
-        wide[rows, modes, m * places.column[:, None] + 2 * modes + part] = by_share[:, :, 1, part]
-    gain[:, :, q:] += wide[:, :, np.repeat(problem.free, 2, axis=1).ravel()]
+        gain[:, modes, at + part] += by_share[:, :, part]
     return np.asarray(gain)

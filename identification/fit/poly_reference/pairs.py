@@ -13,7 +13,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
 from identification.fit.poly_reference.blocks import blocks_times, inverses, rotations, times_blocks
-from identification.fit.poly_reference.equations import Problem, Projected, summed
+from identification.fit.poly_reference.equations import Problem, Projected
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,28 +49,31 @@ class PairEquations:
         pair : tuple of int
             The two modes.
         """
-        places, level = problem.places, problem.weights.level
+        places = problem.places
         both = (2 * np.array(pair)[:, None] + np.arange(2)).ravel()
         others = np.setdiff1d(np.arange(share.shape[1]), pair)
         rest = (2 * others[:, None] + np.arange(2)).ravel()
-        own = rotations(share[:, others])[places.column]
-        gram, cross = left.gram * level[:, None, None], left.cross * level[:, None]
-        inner = blocks_times(own, times_blocks(gram[:, rest[:, None], rest], own))
-        pulls = blocks_times(own, cross[:, rest, None])[:, :, 0]
-        held, aim = inverses(summed(places, inner)), summed(places, pulls)
+        turns = rotations(share[:, others])
         n_rows, n_columns = places.shape
+        inner, aim = np.zeros((n_rows, len(rest), len(rest))), np.zeros((n_rows, len(rest)))
         shared = np.zeros((n_rows, len(rest), n_columns, 4))
-        shared[places.row, :, places.column] = blocks_times(own, gram[:, rest[:, None], both])
         normal, target = np.zeros((n_rows, n_columns, 4, n_columns, 4)), np.zeros((n_rows, n_columns, 4))
-        normal[places.row, places.column, :, places.column] = gram[:, both[:, None], both]
-        target[places.row, places.column] = cross[:, both]
+        for gram, mine, column in left.alike(places):
+            rows, own, level = places.row[mine], turns[column], problem.weights.level[mine]
+            wide = level[:, None, None]
+            inner[rows] += wide * blocks_times(own, times_blocks(gram[np.ix_(rest, rest)], own))
+            aim[rows] += level[:, None] * times_blocks(left.cross[np.ix_(mine, rest)], own)
+            shared[rows, :, column] = wide * blocks_times(own, gram[np.ix_(rest, both)])
+            normal[rows, column, :, column] = wide * gram[np.ix_(both, both)]
+            target[rows, column] = level[:, None] * left.cross[np.ix_(mine, both)]
+        held = inverses(inner)
         size = 4 * n_columns
         across = shared.reshape(n_rows, len(rest), size)
         follow = np.matmul(held, across)
         return cls(
             normal.reshape(n_rows, size, size) - np.matmul(across.transpose(0, 2, 1), follow),
             target.reshape(n_rows, size) - np.einsum("ik,ikm->im", aim, follow),
-            left.power - float(np.einsum("ik,ikl,il->", aim, held, aim, optimize=True)),
+            left.power - float(np.sum(aim * np.matmul(held, aim[:, :, None])[:, :, 0])),
         )
 
     def misfits(self, trials: ComplexArray) -> FloatArray:

@@ -16,7 +16,8 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import normal_equations
-from identification.fit.equations.refine import Fit, decaying, fit_at
+from identification.fit.equations.iteration import NOTHING, decaying, expected_gain, solved_step
+from identification.fit.equations.refine import Fit, fit_at
 from identification.fit.equations.residues import Residues
 from identification.fit.poly_reference.blocks import inverses, paired
 from identification.fit.poly_reference.equations import Problem, Step, evaluate, residue_gain
@@ -105,14 +106,17 @@ def _iterate(
 ) -> tuple[ComplexArray, ComplexArray, Step, bool]:
     state, damping, n = evaluate(problem, poles, share), 1e-3, len(poles)
     for _ in range(_ITERATIONS):
-        move = _solve(state, damping)
+        move = solved_step(state.normal, state.gradient, damping)
+        promised = expected_gain(state.normal, state.gradient, move)
+        if promised < NOTHING * _CONVERGED:
+            return poles, share, state, True
         trial_poles = decaying(poles + paired(move[: 2 * n]), poles, decay)
         trial_share = share.copy()
         trial_share[problem.free] += paired(move[2 * n :])
         trial = evaluate(problem, trial_poles, trial_share)
         if trial.cost > state.cost:
             damping *= 10.0
-            if damping > _STUCK:
+            if damping > _STUCK or promised < _CONVERGED:
                 return poles, share, state, True
             continue
         gain = state.cost - trial.cost
@@ -120,13 +124,6 @@ def _iterate(
         if gain < _CONVERGED:
             return poles, share, state, True
     return poles, share, state, False
-
-
-def _solve(state: Step, damping: float) -> FloatArray:
-    diagonal = np.diag(state.normal)
-    length = np.sqrt(np.maximum(diagonal, 1e-24 * diagonal.max() + 1e-200))
-    unit = state.normal / np.outer(length, length) + (damping + 1e-14) * np.eye(len(length))
-    return np.asarray(np.linalg.solve(unit, state.gradient / length) / length)
 
 
 def _result(
@@ -143,7 +140,7 @@ def _result(
     residue_variance, long_variance = _variances(problem, share, step, covariance)
     sign, both = places.sign[:, None], (2 * order[:, None] + np.arange(2)).ravel()
     residue_variance = np.hstack([residue_variance, np.zeros((len(sign), n - h))])[:, order]
-    residue_variance = np.where(order < h, residue_variance, free.linear_inverse[:, 1 : 2 * n : 2])
+    residue_variance = np.where(order < h, residue_variance, free.residue_inverse[:, 1::2])
     held_fit = replace(
         free,
         linear=Residues((step.residues * sign)[:, order], step.terms * sign, problem.powers),
@@ -171,8 +168,15 @@ def _variances(
     """Return the variances of Im R_ij, shape (n_frf, n_held), and of a part of phi, (n_rows, n_held)."""
     places, n_held = problem.places, share.shape[1]
     held = 0.5 * np.einsum("imm->im", step.held).reshape(-1, n_held, 2).mean(axis=2)
-    gain = residue_gain(problem, step, share)
-    by_all = np.einsum("jnp,pq,jnq->jn", gain, covariance, gain, optimize=True)
-    residues = held[places.row] * np.abs(share[places.column]) ** 2 + np.maximum(by_all, 0.0)
-    spread = np.einsum("imp,pq,imq->im", step.follow, covariance, step.follow, optimize=True)
-    return residues, held + np.maximum(spread, 0.0).reshape(-1, n_held, 2).mean(axis=2)
+    by_all = np.empty((len(places.row), n_held))
+    for column in range(places.shape[1]):
+        mine = np.flatnonzero(places.column == column)
+        by_all[mine] = _spread(residue_gain(problem, step, share, column), covariance)
+    residues = held[places.row] * np.abs(share[places.column]) ** 2 + by_all
+    spread = _spread(step.follow, covariance)
+    return residues, held + spread.reshape(-1, n_held, 2).mean(axis=2)
+
+
+def _spread(gain: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return the variances of what follows parameters by a gain, (n, m, n_parameters), never negative."""
+    return np.asarray(np.maximum(np.einsum("imp,imp->im", gain @ covariance, gain), 0.0))

@@ -145,7 +145,8 @@ def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     groups = split_modes.clusters(fit.poles, disagreement)
     if not suspected and not groups:
         return None
-    residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
+    residual = left_over(frfs, fit)
+    weights = search_weights(frfs, fit, residual)
     for pair in suspected:
         found = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
         if found is None or not found.two_modes:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, squared
 from acquisition.form import FORMS
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations.normal_equations import Weights
@@ -22,6 +22,7 @@ _UNEQUAL = 8.0
 about its own width. Half of it would part the narrow and the wide half of a mode that is spread unevenly."""
 _REACH = 6.0  # half-widths about them over which the FRFs are compared
 _STEPS = 10
+_SETTLED = 1e-4  # part of the misfit by which a step must lower it for another
 _DOUBT = 3.0  # standard deviations of chi-squared by which one pole each may fit worse
 _LEAST_LINES = 6
 _RATIO_OF_TWO = 20.0
@@ -128,7 +129,7 @@ def misfits(
         weights.full[:, near] if len(weights.lines) > 1 else weights.level[:, None] * weights.lines[:, near]
     )
     target = both + residual[:, near]
-    common = np.sum(weight * np.abs(residual[:, near]) ** 2)
+    common = np.sum(weight * squared(residual[:, near]))
     energy = np.abs(residues[:, group]) ** 2
     mean = np.sum(energy * own, axis=1) / np.maximum(energy.sum(axis=1), np.finfo(float).tiny)
     starts = [np.broadcast_to(p, mean.shape) for p in own] + [mean]
@@ -149,13 +150,16 @@ def _single(
     With columns u = s^q / (s - p) and u / (s - p) the second factor over the first is the step of p.
     """
     poles, limit = np.array(start), np.abs(start.real)
-    best = np.full(len(target), np.inf)
+    best, power = np.full(len(target), np.inf), np.sum(weight * squared(target), axis=1)
     for _ in range(_STEPS):
-        u = front / (s - poles[:, None])
-        columns = np.stack([u, np.broadcast_to(front / front[0], u.shape), u / (s - poles[:, None])], axis=2)
-        two, _ = _solved(columns[:, :, :2], target, weight)
+        inverse = 1.0 / (s - poles[:, None])
+        u = front * inverse
+        columns = np.stack([u, np.broadcast_to(front / front[0], u.shape), u * inverse], axis=1)
+        two, factors = _solved(columns, target, weight, power)
+        gain = float(np.sum(best) - np.sum(np.minimum(best, two)))
         best = np.minimum(best, two)
-        _, factors = _solved(columns, target, weight)
+        if gain < _SETTLED * float(best.sum()):
+            break
         step = factors[:, 2] / np.where(factors[:, 0] == 0, 1.0, factors[:, 0])
         step *= limit / np.maximum(np.abs(step), limit)
         moved = poles + step
@@ -164,13 +168,16 @@ def _single(
 
 
 def _solved(
-    columns: ComplexArray, target: ComplexArray, weight: FloatArray
+    columns: ComplexArray, target: ComplexArray, weight: FloatArray, power: FloatArray
 ) -> tuple[FloatArray, ComplexArray]:
-    """Solve each FRF's least squares; return its weighted misfit and its factors."""
-    length = np.maximum(np.sqrt(np.einsum("jl,jlk->jk", weight, np.abs(columns) ** 2)), np.finfo(float).tiny)
-    unit = columns / length[:, None, :]
-    gram = np.einsum("jlk,jl,jlm->jkm", unit.conj(), weight, unit, optimize=True)
-    right = np.einsum("jlk,jl,jl->jk", unit.conj(), weight, target, optimize=True)
-    factors = np.linalg.solve(gram + 1e-13 * np.eye(gram.shape[1]), right[:, :, None])[:, :, 0]
-    left = target - np.einsum("jlk,jk->jl", unit, factors)
-    return np.sum(weight * np.abs(left) ** 2, axis=1), np.asarray(factors / length)
+    """Solve each FRF's least squares; return its weighted misfit by the first two columns, and its factors by all."""
+    weighted = columns.conj() * weight[:, None, :]
+    gram = np.matmul(weighted, columns.transpose(0, 2, 1))
+    right = np.matmul(weighted, target[:, :, None])[:, :, 0]
+    length = np.maximum(np.sqrt(np.einsum("jkk->jk", gram).real), np.finfo(float).tiny)
+    firm = gram / (length[:, :, None] * length[:, None, :]) + 1e-13 * np.eye(gram.shape[1])
+    unit = right / length
+    two = np.linalg.solve(firm[:, :2, :2], unit[:, :2, None])[:, :, 0]
+    factors = np.linalg.solve(firm, unit[:, :, None])[:, :, 0]
+    explained = np.sum((two.conj() * unit[:, :2]).real, axis=1)
+    return np.maximum(power - explained, 0.0), np.asarray(factors / length)
