@@ -8,9 +8,6 @@ from acquisition.arrays import ComplexArray, FloatArray
 from identification.fit.equations.projection import Problem, State, Step, state_at
 
 _RIDGE = 1e-14
-NOTHING = 0.01
-"""Part of the gain at which an iteration rests that a step must promise [-]: at rest, rounding makes every step a loss,
-and each is tried again with more damping."""
 _LONG = 4  # steps from which on as few combinations of FRFs as show the poles are worth forming
 
 
@@ -44,8 +41,6 @@ def _iterate(
         rest = max(tolerance[0] * state.cost, tolerance[1])
         step = solved_step(state.step.normal, state.step.gradient, damping)
         promised = expected_gain(state.step.normal, state.step.gradient, step)
-        if promised < NOTHING * rest:
-            return state, True
         trial_poles = state.poles + step[0::2] + 1j * step[1::2]
         trial = state_at(problem, decaying(trial_poles, state.poles, problem.axis.decay))
         if trial.cost <= state.cost:

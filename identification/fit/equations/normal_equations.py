@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import ComplexArray, FloatArray, row_blocks
 
 _RIDGE, _SINGULAR = 1e-15, 1e-10  # added to columns of unit length; the second where the first does not do
 _MANY = (
@@ -89,10 +89,15 @@ def prepared(values: ComplexArray, weights: Weights) -> Data:
     weights : Weights
         One per value.
     """
-    real, imaginary = values.real, values.imag
-    weighted = np.concatenate([real * weights.lines, imaginary * weights.lines], axis=1)
-    n = values.shape[1]
-    power = np.einsum("jn,jn->j", weighted[:, :n], real) + np.einsum("jn,jn->j", weighted[:, n:], imaginary)
+    n_frf, n = values.shape
+    weighted, power = np.empty((n_frf, 2 * n)), np.empty(n_frf)
+    lines = np.broadcast_to(weights.lines, values.shape)
+    for rows in row_blocks(values.shape):
+        real, imaginary = values.real[rows], values.imag[rows]
+        np.multiply(real, lines[rows], out=weighted[rows, :n])
+        np.multiply(imaginary, lines[rows], out=weighted[rows, n:])
+        power[rows] = np.einsum("jn,jn->j", weighted[rows, :n], real)
+        power[rows] += np.einsum("jn,jn->j", weighted[rows, n:], imaginary)
     return Data(weighted, power, weights)
 
 

@@ -16,7 +16,7 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import normal_equations
-from identification.fit.equations.iteration import NOTHING, decaying, expected_gain, solved_step
+from identification.fit.equations.iteration import decaying, expected_gain, solved_step
 from identification.fit.equations.refine import Fit, fit_at
 from identification.fit.equations.residues import Residues
 from identification.fit.poly_reference.blocks import inverses, paired
@@ -26,6 +26,7 @@ from identification.fit.poly_reference.starts import first_participations, untan
 
 _ITERATIONS = 50
 _CONVERGED = 1e-4  # gain in the misfit, which is a chi-square
+_NOTHING = 0.01  # part of that gain that a step must promise: at rest, rounding makes every step a loss
 _STUCK = 1e8  # damping at which no step helps any more
 _CHANCE = 1e-4
 
@@ -108,7 +109,7 @@ def _iterate(
     for _ in range(_ITERATIONS):
         move = solved_step(state.normal, state.gradient, damping)
         promised = expected_gain(state.normal, state.gradient, move)
-        if promised < NOTHING * _CONVERGED:
+        if promised < _NOTHING * _CONVERGED:
             return poles, share, state, True
         trial_poles = decaying(poles + paired(move[: 2 * n]), poles, decay)
         trial_share = share.copy()

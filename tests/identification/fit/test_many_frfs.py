@@ -88,13 +88,13 @@ def test_few_frfs_are_fitted_as_they_are(frfs, poles):
     assert problem.combined(np.ones((len(frfs.values), 20))) is None
 
 
-def test_a_fit_at_rest_is_not_evaluated_again(frfs, poles, monkeypatch):
+def test_a_fit_at_rest_is_not_tried_with_ever_more_damping(frfs, poles, monkeypatch):
     weights = uniform_weights(frfs)
     found = refine(frfs, poles, weights)
     steps = counted(monkeypatch, iteration, "state_at")
-    again = refine(frfs, found.poles, weights, known=found.equations, enough=1e-4, iterations=3)
+    again = refine(frfs, found.poles, weights, known=found.equations, enough=1e-4)
     assert again.converged
-    assert not steps
+    assert len(steps) <= 4
 
 
 def test_a_rank_one_fit_at_rest_is_not_tried_with_ever_more_damping(frfs, monkeypatch):
