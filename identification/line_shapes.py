@@ -13,7 +13,7 @@ from acquisition.frfs.line_shape import KINDS, Kind, LineShape
 from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.fit import Fitted, fit_candidates
-from identification.fit.noise.leakage import leaked
+from identification.fit.noise.leakage import follows, leaked
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
 from identification.fit.search.completion import COARSE, SHORT
 
@@ -21,6 +21,11 @@ RESOLVED = 1.5
 """Distance of poles that a Hann window shows as one [lines]: the half-power width of |W|^2 is 1.44. Doubled, close
 modes count as one until the completion of the fit adds the second again; halved, the two poles that imitate the line
 shape stay."""
+
+STRONG = 10.0
+"""By how much Schwarz's criterion must fall for a line shape that nobody stated [-]: very strong evidence (Kass and
+Raftery, J. Am. Stat. Assoc. 90 (1995) 773-795). Doubled: no change where peaks are narrow; at none, peaks far wider
+than lines get a shape by chance, and a damping that is off by more than its sigma."""
 
 BROAD = 100.0
 """Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without
@@ -33,7 +38,8 @@ def fit_shaped(
     """Fit candidates with the line shape that explains the FRFs best, no window included unless one is stated.
 
     A shape that nobody states counts if the fit with it explains more than the one without, each pole and term at its
-    price (Schwarz, Ann. Stat. 6 (1978) 461-464): two poles under a half-power width apart imitate the line shape.
+    price (Schwarz, Ann. Stat. 6 (1978) 461-464), and the number of averages, which the law of leakage has beside the
+    levels of the noise, too: two poles under a half-power width apart imitate the line shape.
     Beside a course only a stated window counts: what a course leaves on peaks passes for errors of averages.
 
     Parameters
@@ -61,7 +67,7 @@ def fit_shaped(
             failure = error
     if not fits:
         raise failure or EstimationError(f"{frfs.source}: no candidate is a mode of the band")
-    return min(fits, key=_price)
+    return min(fits, key=lambda fitted: _price(fitted) - (0.0 if fitted.frfs.line_shape else STRONG))
 
 
 def _worth_a_fit(frfs: FrfSet, start: ComplexArray) -> list[Kind]:
@@ -101,16 +107,16 @@ def _of_few(frfs: FrfSet, poles: ComplexArray) -> tuple[float, float]:
     fit = refine(frfs, fit.poles, weights, iterations=SHORT, tolerance=COARSE)
     residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
     variance = noise_weights(frfs, residual, absorbed, leaked(frfs, fit.poles, fit.linear.residues))[1]
-    return misfit, _criterion(fit, residual, variance)
+    return misfit, _criterion(frfs, fit, residual, variance)
 
 
 def _price(fitted: Fitted) -> float:
     """Return Schwarz's criterion with the noise that the fit leaves: less is better [-]."""
-    return _criterion(fitted.fit, fitted.residual, fitted.variance)
+    return _criterion(fitted.frfs, fitted.fit, fitted.residual, fitted.variance)
 
 
-def _criterion(fit: Fit, residual: ComplexArray, variance: FloatArray) -> float:
+def _criterion(frfs: FrfSet, fit: Fit, residual: ComplexArray, variance: FloatArray) -> float:
     n_frf = len(residual)
     lack = float(np.sum(np.log(variance) + np.abs(residual) ** 2 / variance))
-    unknowns = len(fit.poles) * (2 * n_frf + 2) + n_frf * len(fit.linear.powers)
+    unknowns = len(fit.poles) * (2 * n_frf + 2) + n_frf * len(fit.linear.powers) + follows(frfs)
     return float(2.0 * lack + unknowns * np.log(2 * residual.size))

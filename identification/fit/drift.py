@@ -182,19 +182,20 @@ def _from_scores(
     window_shaped_noise = inflation(weights.fade, decay_over_record(frfs, fit.poles))[2][within].max(
         initial=1.0
     )
+    reach = (frfs.decay - fit.poles.real) / np.abs(fit.poles)
     common = _common_variance(
         pulls @ within / window_shaped_noise, within @ information @ within / window_shaped_noise
     )
     each = np.zeros(n_modes)
     if (own & within).any():
-        each = _own_variances(pulls, information, own & within, common)
+        each = _own_variances(pulls, information, own & within, common, reach)
     prior = common * np.outer(within, within) + np.diag(each)
     given = np.linalg.inv(np.eye(n_modes) + information @ prior)
     posterior = prior @ given
     shift = np.clip(np.einsum("gnm,gm->gn", posterior, pulls), -LARGEST, LARGEST)
     total = np.diag(prior)
     shared = common * np.einsum("gnm,gm->gn", given, pulls) @ within
-    raw, raw_variance = _own_shifts(pulls, information, within)
+    raw, raw_variance = _own_shifts(pulls, information, within, reach)
     return Drift(
         poles=fit.poles,
         shift=shift[label],
@@ -219,9 +220,13 @@ def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
 
 
 def _own_shifts(
-    pulls: FloatArray, information: FloatArray, within: BoolArray
+    pulls: FloatArray, information: FloatArray, within: BoolArray, reach: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return each group's own shifts and their variances, infinite where it tells nothing, (n_groups, n_modes)."""
+    """Return each group's own shifts and their variances, infinite where it tells nothing, (n_groups, n_modes).
+
+    Scores are straight in a shift within a half-width of the peak, ``reach`` [-]. A group that does not determine its
+    shift to that, at a node or in noise, tells nothing of it: there a step along the scores may be of any size.
+    """
     diagonal = np.einsum("gnn->gn", information)
     seen = (diagonal > 1e-12 * diagonal.max(axis=0, initial=0.0)) & (diagonal > 0) & within
     length = np.where(seen, np.sqrt(np.where(seen, diagonal, 1.0)), np.inf)
@@ -230,7 +235,8 @@ def _own_shifts(
     inverse = np.linalg.pinv(unit, rcond=1e-9, hermitian=True)
     variance = np.einsum("gnn->gn", inverse) / length**2
     own = np.einsum("gnm,gm->gn", inverse, pulls / length) / length
-    return np.where(seen, own, 0.0), np.where(seen & (variance > 0), variance, np.inf)
+    seen &= (variance > 0) & (variance < reach**2)
+    return np.where(seen, own, 0.0), np.where(seen, variance, np.inf)
 
 
 def _common_variance(pulls: FloatArray, information: FloatArray) -> float:
@@ -244,9 +250,15 @@ def _common_variance(pulls: FloatArray, information: FloatArray) -> float:
     )
 
 
-def _own_variances(pulls: FloatArray, information: FloatArray, own: BoolArray, common: float) -> FloatArray:
-    """Return the variances of the shifts that each mode has beside the common ones, (n_modes,) [-]."""
-    shifts, variance = _own_shifts(pulls, information, own)
+def _own_variances(
+    pulls: FloatArray, information: FloatArray, own: BoolArray, common: float, reach: FloatArray
+) -> FloatArray:
+    """Return the variances of the shifts that each mode has beside the common ones, (n_modes,) [-].
+
+    Two modes that share a peak in few lines are taken for one, whose frequency is another in every FRF. Where half of
+    the groups shift it by more than is believed of a shift, it is none.
+    """
+    shifts, variance = _own_shifts(pulls, information, own, reach)
     weight = 1.0 / (variance + common)
     mean = np.sum(weight * shifts, axis=1) / np.maximum(weight.sum(axis=1), np.finfo(float).tiny)
     each = scatter_beyond_noise(
@@ -257,7 +269,8 @@ def _own_variances(pulls: FloatArray, information: FloatArray, own: BoolArray, c
         np.sum(1.0 / variance, axis=0), np.finfo(float).tiny
     )
     sure = _surely(np.sum((shifts - mean) ** 2 / variance, axis=0), count, _CHANCE_OF_ONE)
-    return np.where((count < _FEW_OF_ONE) | ~sure, 0.0, each)
+    beyond = np.sum((np.abs(shifts) > LARGEST) & np.isfinite(variance), axis=0)
+    return np.where((count < _FEW_OF_ONE) | ~sure | (2 * beyond > count), 0.0, each)
 
 
 def _surely(chi: FloatArray | float, count: IntArray | int, chance: float) -> BoolArray:

@@ -89,7 +89,7 @@ def hit_groups(frfs: FrfSet) -> tuple[IntArray, ...]:
 
     Averages over windowed blocks may all be of one force, whatever their references: their errors show it.
     """
-    if leakage.follows(frfs.line_shape):
+    if leakage.follows(frfs):
         rows: tuple[IntArray, ...] = (np.arange(len(frfs.values)),)
     elif frfs.scatter is not None:
         rows = frfs.scatter.hit_groups
@@ -128,7 +128,7 @@ def common_noise(
     groups = hit_groups(frfs)
     own, each = variance, []
     for rows in groups:
-        if leakage.follows(frfs.line_shape):
+        if leakage.follows(frfs):
             b = np.full(way.shape[1], leakage.shared(way, residual, variance))
         else:
             b = _factor_variance(way, residual, variance, rows)

@@ -16,7 +16,6 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.form import FORMS
 from acquisition.frfs.frf import FrfSet
-from acquisition.frfs.line_shape import LineShape
 
 _ROUNDS = 6
 _PEAK = 6.0
@@ -25,9 +24,9 @@ _STEP = 1e-3
 """Least ratio of a variance to the one of the round before [-]."""
 
 
-def follows(shape: LineShape | None) -> bool:
-    """Tell whether errors of FRFs with a line shape follow this law."""
-    return shape is not None and shape.kind == "averaged"
+def follows(frfs: FrfSet) -> bool:
+    """Tell whether errors of FRFs follow this law: averages of blocks whose variance did not come with them."""
+    return frfs.variance is None and frfs.line_shape is not None and frfs.line_shape.kind == "averaged"
 
 
 def leaked(frfs: FrfSet, poles: ComplexArray, residues: ComplexArray) -> ComplexArray | None:
@@ -51,7 +50,7 @@ def leaked(frfs: FrfSet, poles: ComplexArray, residues: ComplexArray) -> Complex
         Square root of N times the variance, with its phase [unit of the FRFs].
     """
     shape = frfs.line_shape
-    if shape is None or not follows(shape):
+    if shape is None or not follows(frfs):
         return None
     poles = np.concatenate([poles, poles.conj()])
     residues = np.hstack([residues, residues.conj()])

@@ -127,23 +127,6 @@ def from_residual(
     return weights, 1.0 / weights.full
 
 
-def grown_locally(
-    residual: ComplexArray, absorbed: FloatArray, floor: FloatArray, model: ComplexArray
-) -> tuple[Weights, FloatArray]:
-    """Return weights and variances where windows leave errors that follow the FRF: a + b |H|^2 about each line.
-
-    The ends of the blocks cut what still rings: the random errors of averages are largest on peaks and in proportion
-    to them (Bendat and Piersol, Random Data, 4th ed., Sec. 9.2.3). Parameters as of :func:`from_residual`.
-    """
-    free = np.maximum(1.0 - absorbed, 0.02)
-    window = window_length(residual.shape[1])
-    power = squared(residual) / free
-    variance = np.maximum(_levelled(power, squared(model), lambda m: local_mean(m, window)), floor)
-    variance = np.maximum(variance * np.mean(power / variance, axis=1, keepdims=True), floor)
-    level = 1.0 / np.exp(np.mean(np.log(variance), axis=1))
-    return Weights(level, 1.0 / (variance * level[:, None])), variance
-
-
 def _over_all_lines(values: FloatArray) -> FloatArray:
     return np.asarray(np.mean(values, axis=1, keepdims=True))
 

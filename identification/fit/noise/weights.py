@@ -88,8 +88,7 @@ def noise_weights(
     known = _stated(frfs, residual)
     floor = levels.quiet_floor(frfs.values)
     if known is None:
-        of_residual = levels.from_residual if frfs.line_shape is None else levels.grown_locally
-        weights, variance = of_residual(residual, absorbed, floor, frfs.values - residual)
+        weights, variance = levels.from_residual(residual, absorbed, floor, frfs.values - residual)
         return replace(weights, fade=fade), variance, False
     if frfs.variance is None:
         excess = np.mean(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, 0.02), axis=1)
