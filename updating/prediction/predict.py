@@ -404,10 +404,13 @@ class Predictor(Displayed):
         """Return the damped modes of a state, exact for damping that is not proportional."""
         return complex_modes(self.matrices(state), rigid=self.reduced.structure.rigid_modes)
 
-    def point_rows(self, state: State = NOMINAL) -> FloatArray:
-        """Return the rows of the basis at the points of the test, absorbers behind it, shape (n_points, r)."""
+    def point_rows(self, state: State = NOMINAL, places: FloatArray | None = None) -> FloatArray:
+        """Return the rows of the basis at the points of the test, absorbers behind it, shape (n_points, r).
+
+        Where ``places`` (n_points, dim) [m] are more than these, at them.
+        """
         total = self.base.plus(state)
-        rows = self._rows(total)["w"][:, : self.reduced.ranks[total.released]]
+        rows = self._rows(total, places)["w"][:, : self.reduced.ranks[total.released]]
         return padded(rows, total.absorbers) if total.absorbers else rows
 
     def point_slopes(self, state: State = NOMINAL) -> FloatArray:

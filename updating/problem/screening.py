@@ -294,10 +294,10 @@ def _misfits(
 
 def _macs(stage: Predictor, others: State, modes: FloatArray) -> FloatArray:
     """Return the MAC of the measured constants with those of modes (n_states, r, m), (n_states, n_modes, m) [-]."""
-    test = stage.measured
-    shapes = stage.point_rows()[:, : modes.shape[1]] @ modes
+    test, read = stage.measured, measurement_chain(stage.measured, stage.base.plus(others))
+    shapes = stage.point_rows(others, read.points)[:, : modes.shape[1]] @ modes
     moved = shapes.transpose(1, 0, 2)
-    predicted = measurement_chain(test, stage.base.plus(others)).product(moved, moved)
+    predicted = read.product(moved, moved)
     across = np.einsum("fr,fbm->brm", test.constants, predicted) ** 2
     size = np.sum(predicted**2, axis=0)[:, None] * np.sum(test.constants**2, axis=0)[:, None]
     return np.asarray(across / np.maximum(size, 1e-300))

@@ -109,14 +109,24 @@ def _mirrored(bodies: tuple[tuple[float, float], ...]) -> list[list[float]]:
     return [sorted(places), sorted(1 - place for place in places)]
 
 
-def test_what_has_no_place_stays_where_it_is_and_a_body_is_placed_beside_it() -> None:
+@pytest.mark.parametrize("name", ["E", "position_error", "polarity", "sensor_mass"])
+def test_what_has_no_place_stays_where_it_is_and_a_body_is_placed_beside_it(name: str) -> None:
     problem = pose(case_of(hit(with_bodies((0.3, 0.05))), FREE))[0]
-    spread = Candidate((LIBRARY["E"],)), np.array([0.5])
-    found = beside([spread, (single("lumped_mass"), np.full(3, 0.5))], problem.predictor)
+    other = Candidate((LIBRARY[name],), chosen=(problem.forms(LIBRARY[name])[0],))
+    start = np.full(len(problem.parameters(other)), 0.5)
+    found = beside([(other, start), (single("lumped_mass"), np.full(3, 0.5))], problem.predictor)
     assert found is not None
-    assert found[0] == 0.5
-    assert min(abs(found[2] - 0.3), abs(found[2] - 0.7)) < 2 * HALF_A_STEP
-    assert beside([spread, spread], problem.predictor) is None
+    assert found[: len(start)] == pytest.approx(start)
+    assert min(abs(found[-2] - 0.3), abs(found[-2] - 0.7)) < 3 * HALF_A_STEP
+    assert beside([(other, start)] * 2, problem.predictor) is None
+
+
+def test_an_effect_with_unknowns_of_its_own_is_no_place_to_search_from() -> None:
+    clamped = replace(FREE, clamped=("x0",))
+    problem = pose(case_of(hit(with_bodies((0.3, 0.05))), clamped))[0]
+    soft = Candidate((LIBRARY["clamp_rotation"],))
+    parts = [(soft, np.array([0.5])), (single("lumped_mass"), np.full(3, 0.5))]
+    assert beside(parts, problem.predictor) is None
 
 
 def test_a_place_that_a_form_fixes_and_pairs_are_not_screened() -> None:
