@@ -109,7 +109,7 @@ def beside(
     Returns
     -------
     (k_1 + k_2 + ...,) array
-        None where no part has a free place, or all are on other theories.
+        None where no part has a free place, or one brings unknowns of its own, as a clamp that gives way does.
     """
     effects = tuple(effect for one, _ in parts for effect in one.effects)
     stage = Candidate(effects, fuller=any(one.fuller for one, _ in parts)).stage(predictor)
