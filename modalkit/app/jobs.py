@@ -32,7 +32,7 @@ class Job:
         What is done, and to which state.
     folder : Path
         Where the result will stand.
-    process : Popen
+    process : subprocess.Popen
         Who does it.
     begun : float
         When it began [s].

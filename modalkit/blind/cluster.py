@@ -29,7 +29,7 @@ def cluster_outcomes(
     ----------
     indices : sequence of int
         Trials.
-    seed, plan : int and Plan
+    seed, plan : int and DrawRanges
         Of the run.
     scheduler : str
         Address of the scheduler, ``tcp://host:8786``.

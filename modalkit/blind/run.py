@@ -28,7 +28,7 @@ class BlindResult:
     ----------
     seed : int
         Of the run.
-    plan : Plan
+    plan : DrawRanges
         What could be drawn.
     outcomes : tuple of Outcome
         One per trial.
@@ -59,7 +59,7 @@ def run_blind(
     ----------
     trials, seed : int
         Number of trials, and seed of the run.
-    plan : Plan, optional
+    plan : DrawRanges, optional
         What may be drawn.
     workers : int
         Trials in flight at a time on this machine, each with a diagnosing process of its own [-].

@@ -36,7 +36,7 @@ def run_trial(
         Of the run, and of the trial in it.
     diagnose : callable
         Study file, and effects to leave out of the library, to diagnosis.
-    plan : Plan, optional
+    plan : DrawRanges, optional
         What may be drawn.
     announce : callable, optional
         Called with the trial's number and commitment before the diagnosis begins.

@@ -32,7 +32,7 @@ class Store:
         The file.
     seed : int
         Of the run; the file holds a salted hash of it.
-    plan : Plan
+    plan : DrawRanges
         What may be drawn.
     resume : bool
         Whether to go on with a store that stands there.

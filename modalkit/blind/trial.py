@@ -144,7 +144,7 @@ def draw_trial(seed: int, index: int, *, plan: DrawRanges = _EVERYTHING) -> Tria
     ----------
     seed, index : int
         Of the run, and of the trial in it.
-    plan : Plan, optional
+    plan : DrawRanges, optional
         What may be drawn.
 
     Returns

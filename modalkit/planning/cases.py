@@ -68,7 +68,7 @@ def choose(
 
     Parameters
     ----------
-    now : Outlook
+    now : DesignForecast
         The test as it is.
     advice : Advice, optional
         What is followed.

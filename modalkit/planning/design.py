@@ -61,7 +61,7 @@ def present(known_test: KnownTest) -> Design:
 
     Parameters
     ----------
-    known_test : Told
+    known_test : KnownTest
         The test.
     """
     setup = known_test.setup
@@ -109,7 +109,7 @@ def whitener(design: Design, known_test: KnownTest, stations: Stations) -> Float
     ----------
     design : Design
         The test.
-    known_test : Told
+    known_test : KnownTest
         How well each kind of datum is known.
     stations : Stations
         The rig's own sensitivities.

@@ -23,7 +23,7 @@ def families(known_test: KnownTest) -> tuple[Family, ...]:
 
     Parameters
     ----------
-    known_test : Told
+    known_test : KnownTest
         The test.
     """
     makers: tuple[Maker, ...] = (*WHOLE, *LOCAL)

@@ -203,7 +203,7 @@ class Advice:
     ----------
     change : Change
         What to do.
-    after : Outlook
+    after : DesignForecast
         The test then.
     separates : tuple of (str, str)
         Pairs told apart then and not before; ``none`` stands for an effect that becomes visible.
@@ -230,7 +230,7 @@ class Forecast:
         The structure and its test.
     curves : tuple of Curve
         The effects.
-    now : Outlook
+    now : DesignForecast
         The test as it is.
     advice : tuple of Advice
         Changes, the most worth first.

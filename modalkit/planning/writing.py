@@ -22,7 +22,7 @@ def write_case(case: Case | None, known_test: KnownTest, folder: Path, *, seed: 
     ----------
     case : Case or None
         What is hidden; None for nothing.
-    known_test : Told
+    known_test : KnownTest
         The test.
     folder : Path
         An empty one.
@@ -54,7 +54,7 @@ def write_scene(
     ----------
     scene, before : Scene
         The rig with and without what is hidden.
-    known_test : Told
+    known_test : KnownTest
         The test.
     folder : Path
         An empty one.

@@ -41,7 +41,7 @@ class SimulatedTest(Displayed):
         Raw hits; points that share their responses are one test.
     effects : tuple of (name, values)
         What is in the model beyond the study's own.
-    test_setup : Rig
+    test_setup : MeasurementSetup
         How it was tested.
     poles : (n_modes,) complex array
         Poles in the band as a test without noise would find them: unknown windows included [rad/s].
@@ -100,7 +100,7 @@ class Prepared(Displayed):
         The study.
     nominal : Predictor
         Its model with some damping, seen from the points of the rig; accepted effects are not in it yet.
-    test_setup : Rig
+    test_setup : MeasurementSetup
         How it is hit.
     options : Options
         What the user said in place of the study.

@@ -30,7 +30,7 @@ def systems(model: Simulated, test_setup: MeasurementSetup, state: State = NOMIN
     model : Simulated
         The model; where points were misplaced, seen from all places of
         :func:`updating.test_data.chain.measurement_chain`.
-    test_setup : Rig
+    test_setup : MeasurementSetup
         How it is hit.
     state : State
         What is wrong with the measurement of single points: signs, labels, places; and the delay.

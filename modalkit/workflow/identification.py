@@ -89,7 +89,7 @@ class Processed(Shown):
         FRFs, estimated from the hits or read.
     judged : tuple of Judged
         The hits they were estimated from; empty where the files held FRFs.
-    processing : Handling
+    processing : ProcessingOptions
         What the user said.
     warnings : tuple of str
         What the user ought to know.
@@ -277,7 +277,7 @@ def read(
         themselves; short for ``Handling(decay=...)`` [1/s].
     layout : path, optional
         Layout of column text; short for ``Handling(layout=...)``.
-    processing : Handling
+    processing : ProcessingOptions
         All that may be said of how records are treated.
     progress : function, optional
         Called with the part of the files that is read, from 0 to 1.
@@ -315,7 +315,7 @@ def read_frfs(
 
     Parameters
     ----------
-    path, handling, progress
+    path, processing, progress
         As of `read`.
 
     Raises
@@ -352,7 +352,7 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
         What they hold; it stays as it is.
     paths : sequence of path
         Their names, for messages.
-    processing : Handling
+    processing : ProcessingOptions
         How records are treated.
 
     Raises
@@ -453,7 +453,7 @@ def stated(test: HammerTest, processing: ProcessingOptions, warnings: list[str])
     ----------
     test : HammerTest
         Records, one a hit.
-    processing : Handling
+    processing : ProcessingOptions
         What the user says of the window.
     warnings : list of str
         What was found is added to it.

@@ -34,7 +34,7 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
 
     Parameters
     ----------
-    found : Shortfall
+    found : TheoryError
         What mesh and theory are off by, of the modes measured.
     measured : Measured
         The test.

@@ -68,7 +68,7 @@ class ModeSet:
         Node numbers.
     shape : (n, 6) complex array
         Translations and rotations.
-    stated_values : Told
+    stated_values : Stated
         What the ID lines say.
     units : Units
         The file's units.

@@ -82,7 +82,7 @@ class State:
         The poles [rad/s].
     step : Step
         Misfit, linear unknowns and the equations of the poles.
-    products : Grams
+    products : NormalEquations
         Products of the linear columns and then the slopes.
     follow : (n_frf or 1, 2 n_modes + n_terms, 2 n_modes) array
         How the linear unknowns follow the slope columns.

@@ -25,7 +25,7 @@ def draw_test(rng: np.random.Generator, plan: DrawRanges) -> dict[str, Any]:
     ----------
     rng : numpy.random.Generator
         Source of randomness.
-    plan : Plan
+    plan : DrawRanges
         Share of baselines.
 
     Returns

@@ -22,7 +22,7 @@ def draw_frame(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     ----------
     rng : numpy.random.Generator
         Source of randomness.
-    plan : Plan
+    plan : DrawRanges
         Of tests.
 
     Returns

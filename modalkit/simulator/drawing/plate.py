@@ -33,7 +33,7 @@ def draw_plate(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     ----------
     rng : numpy.random.Generator
         Source of randomness.
-    plan : Plan
+    plan : DrawRanges
         Share of baselines.
 
     Returns

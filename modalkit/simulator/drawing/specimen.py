@@ -43,7 +43,7 @@ def draw_setup(rng: np.random.Generator, *, plan: DrawRanges = _EVERYTHING) -> S
     ----------
     rng : numpy.random.Generator
         Source of randomness.
-    plan : Plan, optional
+    plan : DrawRanges, optional
         Kinds of specimens, and share of baselines.
 
     Returns

@@ -23,7 +23,7 @@ def checked(plan: DrawRanges) -> DrawRanges:
 
     Parameters
     ----------
-    plan : Plan
+    plan : DrawRanges
         What may be drawn.
 
     Raises
@@ -50,7 +50,7 @@ def choose_sort(rng: np.random.Generator, plan: DrawRanges) -> str:
     ----------
     rng : numpy.random.Generator
         Source of randomness.
-    plan : Plan
+    plan : DrawRanges
         Shares, and the names to draw from.
 
     Returns
@@ -84,12 +84,12 @@ def choose_hidden_effects(
         Drawn beforehand.
     sort : str
         From :func:`choose_sort`.
-    plan : Plan
+    plan : DrawRanges
         The names to draw from.
 
     Returns
     -------
-    tuple of Secret or None
+    tuple of HiddenEffect or None
         In the order in which they act; None if the setup can have none of them. Those that fewer setups can
         have are preferred in proportion, so that all come up about as often; where the theory lacks shear that
         shows, shear is one of them.
@@ -124,7 +124,7 @@ def draw_strength(rng: np.random.Generator, plan: DrawRanges) -> tuple[str, floa
     ----------
     rng : numpy.random.Generator
         Source of randomness.
-    plan : Plan
+    plan : DrawRanges
         Shares of mild and strong ones.
 
     Returns

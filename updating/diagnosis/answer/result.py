@@ -198,7 +198,7 @@ class Where(Displayed):
     zones_by : {"explanations", "regions"}
         Whether these rest on the places of the explanations, or, where nothing explains the gap, on the evidence of
         a change of one region alone.
-    likely_places : tuple of Seat
+    likely_places : tuple of LikelyPlace
         The locations with spread and probability.
     modes : DataFrame, optional
         What each mode adds to the gap, in standard deviations; see :mod:`updating.diagnosis.answer.contributions`.

@@ -120,7 +120,7 @@ class Search:
     ----------
     nothing : Explanation
         The nominal model with its tolerances.
-    compared : tuple of Weighed
+    compared : tuple of Compared
         All sets of effects, most probable first; the empty set is among them.
     not_examined : dict
         Effects left out, and why.

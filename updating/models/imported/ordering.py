@@ -80,7 +80,7 @@ class Ordered:
 
     Parameters
     ----------
-    factor : SuperLU
+    factor : scipy.sparse.linalg.SuperLU
         Of the reordered matrix.
     order : (n,) int array
         Which row stands where in it.
