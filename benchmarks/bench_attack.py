@@ -21,8 +21,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-TESTS = Path(__file__).resolve().parents[1] / "tests"
-sys.path[:0] = [str(TESTS / "attack"), str(TESTS / "updating" / "models")]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "attack"))
 
 from corpus import families
 from judge import BAD, OUTCOMES, Judge, Verdict
