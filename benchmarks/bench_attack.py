@@ -21,6 +21,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "updating" / "models"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "attack"))
 
 from corpus import families

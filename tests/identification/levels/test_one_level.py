@@ -46,10 +46,9 @@ def brought(test: HammerTest, windows: Windows | None = None) -> tuple[ModalMode
     return identified(even, windows), found
 
 
-@pytest.mark.parametrize(
-    "seed", [4, 5]
-)  # of 3 to 10, two show a mode twice here on some processors, and one at the end
-def test_averages_are_smeared_and_stretched_ones_show_each_mode_once(seed: int) -> None:
+@pytest.mark.parametrize("seed", [3, 4, 5, 8])
+def test_averages_are_smeared_and_stretched_ones_show_every_mode(seed: int) -> None:
+    """A mode may still show twice, by rounding: what is brought to one level from there has each once."""
     test, _ = softening(seed)
     plain = identified(test)
     found = level_dependence(plain, [(test, ())])
@@ -58,8 +57,12 @@ def test_averages_are_smeared_and_stretched_ones_show_each_mode_once(seed: int) 
     assert len(plain) != 4 or plain.modal.damping.max() > 1.3 * LOSS
     stretched = stretched_averages(plain, [(test, ())])
     start = identify(stretched.frfs, band=BAND)
-    assert len(start) == 4
-    assert stretched.slopes_at(start.modal.frequency) == pytest.approx(SLOPE, rel=0.1)
+    every = np.log(start.modal.frequency[:, None] / (FREQUENCY * np.exp(SLOPE * found.level)))
+    nearest = np.abs(every).argmin(axis=0)
+    assert len(set(nearest.tolist())) == 4
+    assert np.abs(every[nearest, np.arange(4)]).max() < LOSS
+    assert stretched.slopes_at(start.modal.frequency[nearest]) == pytest.approx(SLOPE, rel=0.1)
+    assert len(brought(test, None)[0]) == 4
 
 
 @pytest.mark.parametrize("windows", [None, Windows(decay=1.0)])
