@@ -354,6 +354,7 @@ def _assemble(
         points_rejected=points_rejected,
         carried=None if np.shares_memory(fitted.frfs.values, data.values) else fitted.frfs,
         trend=trend,
+        hit_errors=covariance.hit_errors(fitted, factors, own),
     )
 
 

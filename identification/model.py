@@ -16,6 +16,7 @@ from acquisition.modal_data import ModalData
 from identification.arrangement import signs
 from identification.fit.equations import basis
 from identification.fit.equations.residues import Residues, synthesise
+from identification.hit_errors import HitErrors
 from identification.poles.stabilisation import StabilisationChart
 from identification.trend import Trend
 
@@ -73,6 +74,8 @@ class ModalModel(Shown, Animated):
         How the modes follow the force of the hits, where it is known that they do.
     trend : Trend, optional
         How frequencies change from the first point to the last; None where a test does not rove over enough points.
+    hit_errors : HitErrors, optional
+        What each hit adds to the errors of the constants; None where no hits are known.
     """
 
     modal: ModalData
@@ -96,6 +99,7 @@ class ModalModel(Shown, Animated):
     carried: FrfSet | None = None
     levels: LevelDependence | None = None
     trend: Trend | None = None
+    hit_errors: HitErrors | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

@@ -77,8 +77,12 @@ times slower at worst, half as many slow a beam of a dozen points down by a half
 
 LEAST_CONSTANT_NOISE = 0.005
 """Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s. [-].
-Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. Doubled:
-good shapes count a quarter as much."""
+Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. It is the
+most that a single constant may be off, see ``UNSEEN_SHARES``. Doubled: good shapes count a quarter as much."""
+
+UNSEEN_SHARES = (1.0, 0.2)
+"""Sizes of that error of a constant, as shares, each as likely [-]: where motion is all along the transducers there is
+next to none of it. Doubled: the largest, and shapes decide less where structures do move across."""
 
 LEAST_TURN = 0.005
 """Shapes of close modes are held to turn into each other where their frequencies' scatter makes it so much [rad]: less

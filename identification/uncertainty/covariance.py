@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, FloatArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations.pruning import constant_variance, pole_covariance
 from identification.fit.equations.refine import scores
@@ -12,6 +12,7 @@ from identification.fit.fit import Fitted
 from identification.fit.noise import window_shaped
 from identification.fit.noise.common_spread import common_factors
 from identification.fit.noise.disagreement import Disagreement, between_frfs
+from identification.hit_errors import HitErrors
 from identification.uncertainty.hit_scatter import NoiseFactors
 from identification.uncertainty.hit_scatter import factors as hit_factors
 from identification.uncertainty.line_scatter import line_factors
@@ -44,7 +45,8 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     if stated is None:
         return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes, misfit * noise.held)
     poles, constants = np.maximum(stated.poles, misfit), np.maximum(stated.constants, misfit)
-    return NoiseFactors(poles, constants, stated.shapes, np.maximum(stated.held, misfit))
+    held = np.maximum(stated.held, misfit)
+    return NoiseFactors(poles, constants, stated.shapes, held, stated.by_hits)
 
 
 def pole_statistics(fitted: Fitted, factors: NoiseFactors, separation: Disagreement) -> FloatArray:
@@ -108,6 +110,26 @@ def own_errors(fitted: Fitted, factors: NoiseFactors, separation: Disagreement) 
     fit = fitted.fit
     held = (2.0 * fit.poles.imag) ** 2 * fit.residue_inverse[:, 1::2]
     return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, separation)))
+
+
+def hit_errors(fitted: Fitted, factors: NoiseFactors, modes: IntArray) -> HitErrors | None:
+    """Return what each hit adds to the errors of the constants of some modes, or None where no hits are known."""
+    if not factors.by_hits:
+        return None
+    fit = fitted.fit
+    size = 2.0 * fit.poles.imag[modes]
+    white = size * np.sqrt(fit.residue_inverse[:, 1::2][:, modes])
+    freedom, hits = np.zeros(len(white)), [0] * len(white)
+    parts: list[list[FloatArray]] = [[] for _ in hits]
+    for group in factors.by_hits:
+        freedom[group.rows] += len(group.alone) - 1.0
+        for i, row in enumerate(group.rows.tolist()):
+            parts[row].append(-size * group.alone[:, i, modes])
+            hits[row] += len(group.alone)
+    deviations = np.zeros((len(white), max(hits), len(modes)))
+    for row, part in enumerate(parts):
+        deviations[row, : hits[row]] = np.concatenate(part) if part else 0.0
+    return HitErrors(deviations, freedom, white, misfit_factor(fitted.frfs, fitted)[modes])
 
 
 def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:

@@ -45,12 +45,15 @@ class NoiseFactors:
     held : (n_frf, n_modes) array
         For each modal constant were the poles known: what is its own and no other constant shares. Not raised
         for the few degrees of freedom behind it: it weighs data by the hundred [-].
+    by_hits : tuple of _Sums
+        What each hit moves, by groups of FRFs that were averaged over the same hits; empty where no hits are known.
     """
 
     poles: FloatArray
     constants: FloatArray
     shapes: FloatArray
     held: FloatArray
+    by_hits: tuple[_Sums, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +68,8 @@ class _Sums:
         Sum of squares of what it moves Im of the residues by, less that by the poles alone.
     held : (n_rows, n_modes) array
         The same with the poles held.
+    alone : (n_hits, n_rows, n_modes) array
+        What each hit moves Im of the residues by with the poles held [as the residues].
     rows : (n_rows,) int array
         Which FRFs.
     joint, disagreement : (n_modes,) arrays
@@ -75,6 +80,7 @@ class _Sums:
     steps: FloatArray
     constants: FloatArray
     held: FloatArray
+    alone: FloatArray
     rows: IntArray
     joint: FloatArray
     disagreement: FloatArray
@@ -117,7 +123,9 @@ def factors(
     freedom = np.where(modes, 2 * _freedom(steps, n), 0.0)
     of_poles = prior.poles * _shrunk(ratio.reshape(n, 2).mean(axis=1) / prior.poles, freedom, _ALIKE_POLES)
     of_constants = _of_constants(fit, groups, spread, plain, prior.constants)
-    return NoiseFactors(of_poles, of_constants, _of_shapes(groups), _of_held(fit, groups, prior.held))
+    return NoiseFactors(
+        of_poles, of_constants, _of_shapes(groups), _of_held(fit, groups, prior.held), tuple(groups)
+    )
 
 
 def _of_shapes(groups: list[_Sums]) -> FloatArray:
@@ -154,7 +162,7 @@ def _moved(
     own, by_poles = alone[:, :, 1 : 2 * n : 2], np.einsum("jnp,hp->hjn", gain, steps)
     joint, disagreement = _shared(own + by_poles, residues.imag * weights.level[rows, None], point[rows])
     both = np.sum(own**2 + 2.0 * own * by_poles, axis=0)
-    return _Sums(steps, both, np.sum(own**2, axis=0), rows, joint, disagreement)
+    return _Sums(steps, both, np.sum(own**2, axis=0), own, rows, joint, disagreement)
 
 
 def _shared(moved: FloatArray, share: FloatArray, point: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Block
+from updating.likelihood.hit_scatter import HitScatter, hit_scatter
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
@@ -69,6 +71,11 @@ class Setting:
     nominal: Prediction
     missed: Prediction
     before: Before | None = None
+
+    @cached_property
+    def scatter(self) -> HitScatter | None:
+        """What the scatter of the hits is made of; None where they do not tell."""
+        return hit_scatter(self.measured, self.nominal)
 
 
 @dataclass(frozen=True, eq=False)

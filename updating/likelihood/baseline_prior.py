@@ -26,6 +26,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.likelihood.hit_scatter import HitScatter, hit_scatter, level_errors, own_variance
 from updating.models.state import State
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
@@ -95,6 +96,20 @@ class Before:
         """The corrected model's modes at the baseline's points, in the order of the baseline."""
         prediction = self._corrected.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
         return prediction.select(match(self.baseline, prediction, self.order))
+
+    @cached_property
+    def scatter(self) -> HitScatter | None:
+        """What the scatter of the baseline's hits is made of; None where they do not tell."""
+        return hit_scatter(self.baseline, self.prediction)
+
+    @cached_property
+    def _own(self) -> FloatArray:
+        """Variance of each of the baseline's constants that no other shares, (n_frf, n_baseline) [1/kg^2]."""
+        return own_variance(self.baseline, self.scatter)
+
+    def level_errors(self, now: Prediction) -> FloatArray:
+        """Return how far errors of the baseline's poles stretch what it says of each present mode, (n_modes,) [-]."""
+        return np.asarray(np.sqrt(self.shares(now) @ level_errors(self.baseline, self.scatter) ** 2))
 
     @cached_property
     def _correction(self) -> FloatArray:
@@ -191,6 +206,12 @@ class Before:
         return np.asarray(self.shares(now) @ np.nan_to_num(stated, nan=UNSTATED_DAMPING_NOISE) ** 2)
 
     @cached_property
+    def twins(self) -> dict[int, int]:
+        """The row of the baseline that joins the same two points, by the row of the test."""
+        here, there = self._rows
+        return dict(zip(here.tolist(), there.tolist(), strict=True))
+
+    @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
         """Rows of the test and of the baseline with the same two points, in either order."""
         return same_rows(self.measured, self.baseline)
@@ -234,9 +255,7 @@ class Before:
         unseen = (1 - self.seen(now))[:, None] * shares
         missed[here] = gain * (error @ weights.T)
         coupled = (self._coupling(now) * shares + unseen) * level**2
-        variance[here] = gain**2 * (
-            self.baseline.constants_sigma[there] ** 2 @ (weights**2).T + error**2 @ coupled.T
-        )
+        variance[here] = gain**2 * (self._own[there] @ (weights**2).T + error**2 @ coupled.T)
         known[here] = gain[:, :, None] * np.einsum(
             "fkp,mk->fmp", self.prediction.constants_by[there], weights
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TypeVar
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.linalg import block_diag
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
+from updating.thresholds import IDEALISATION_SHARES, UNSEEN_SHARES
 
 CHANNELS = ("frequency", "damping", "frf", "phase", "level", "trend", "unpaired")
 """What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force, change over
@@ -47,6 +49,8 @@ class Block:
         What of the variance a candidate's idealisation adds, mode by mode, at the most [-]; left out, nothing.
     idle : (n,) bool array, optional
         Which data the state says nothing of; left out, none.
+    unseen : (n,) array, optional
+        What of the variance is an error that no scatter shows, at the most [-]; left out, nothing.
     """
 
     channel: str
@@ -59,6 +63,7 @@ class Block:
     source: IntArray | None = None
     idealised: FloatArray | None = None
     idle: BoolArray | None = None
+    unseen: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +97,8 @@ class Comparison:
         What of the variance the candidate's idealisation adds, at the most [-]; left out, its size is settled.
     idle : (n,) bool array, optional
         Which data the state says nothing of, so that none of them fits or does not; left out, none.
+    unseen : (n,) array, optional
+        What of the variance is an error that no scatter shows, at the most [-]; left out, its size is settled.
     """
 
     residual: FloatArray
@@ -106,6 +113,7 @@ class Comparison:
     tolerances: IntArray
     idealised: FloatArray | None = None
     idle: BoolArray | None = None
+    unseen: FloatArray | None = None
 
     @property
     def prediction(self) -> Prediction:
@@ -136,15 +144,26 @@ class Comparison:
         """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
         return np.where(self.scaled, scale**2, 1.0) * self.variance
 
-    def settled(self, share: float) -> Comparison:
-        """Return the comparison with the doubt in the candidate's idealisation at a share of the most it may be.
+    def settled(self, share: float, unseen: float = 1.0) -> Comparison:
+        """Return the comparison with the two doubts of unknown size at shares of the most that they may be [-].
 
-        That is the doubt which each datum bears by itself. Whether the whole shift is a few per cent too large no data
-        show, since the effect's own size makes up for it: that doubt stays.
+        The doubt in a candidate's idealisation, ``share``, is that which each datum bears by itself. Whether the whole
+        shift is a few per cent too large no data show, since the effect's own size makes up for it: that doubt stays.
+        ``unseen`` is the share of errors that no scatter of hits shows.
         """
-        if self.idealised is None:
+        if self.idealised is None and self.unseen is None:
             return self
-        return replace(self, variance=self.variance - (1 - share**2) * self.idealised, idealised=None)
+        taken = np.zeros_like(self.variance)
+        for part, of in ((self.idealised, share), (self.unseen, unseen)):
+            if part is not None:
+                taken = taken + (1 - of**2) * part
+        return replace(self, variance=self.variance - taken, idealised=None, unseen=None)
+
+    @property
+    def sizes(self) -> tuple[tuple[float, float], ...]:
+        """Shares at which the two doubts are tried, each as likely: of the idealisation, of what no scatter shows."""
+        idealised = (1.0,) if self.idealised is None else IDEALISATION_SHARES
+        return tuple(product(idealised, (1.0,) if self.unseen is None else UNSEEN_SHARES))
 
 
 def assemble(
@@ -190,6 +209,7 @@ def assemble(
         np.arange(count),
         _filled([(block.idealised, len(block.residual)) for block in blocks], 0.0),
         _filled([(block.idle, len(block.residual)) for block in blocks], False),
+        _filled([(block.unseen, len(block.residual)) for block in blocks], 0.0),
     )
 
 
@@ -237,4 +257,5 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
         _filled([(part.idealised, len(part.residual)) for part in parts], 0.0),
         _filled([(part.idle, len(part.residual)) for part in parts], False),
+        _filled([(part.unseen, len(part.residual)) for part in parts], 0.0),
     )

@@ -12,6 +12,7 @@ from updating.likelihood.base import Quantity, View
 from updating.likelihood.baseline_prior import Missed
 from updating.likelihood.close_modes import CloseModes
 from updating.likelihood.comparison import Block
+from updating.likelihood.hit_scatter import level_errors, own_variance
 from updating.likelihood.missed_modes import MissedModes
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
@@ -62,6 +63,14 @@ class Constants(Quantity):
         return np.asarray(np.sqrt(np.mean(test.constants**2, axis=0)))
 
     @cached_property
+    def _own(self) -> FloatArray:
+        """Variance of each measured constant that no other shares, (n_frf, n_modes) [1/kg^2]."""
+        test, scatter = self.setting.measured, self.setting.scatter
+        if self._nodes.present:
+            return own_variance(test, scatter)
+        return own_variance(test, scatter) + (level_errors(test, scatter) * test.constants) ** 2
+
+    @cached_property
     def _places(self) -> Places:
         return Places(self.setting)
 
@@ -83,9 +92,7 @@ class Constants(Quantity):
         constants, by, missed = self._corrected(view)
         level = self._level(constants, view)
         predicted, by = constants * level, by * level[:, :, None]
-        own_errors = (
-            (test.constants_sigma / scale) ** 2 + missed.variance * level**2 + LEAST_CONSTANT_NOISE**2
-        )
+        own_errors = self._own / scale**2 + missed.variance * level**2 + LEAST_CONSTANT_NOISE**2
         variance = own_errors + self._late(view) ** 2
         uneven, louder = self._idealised(predicted, view.doubt.fidelity)
         own = [
@@ -109,6 +116,7 @@ class Constants(Quantity):
             np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel(),
             np.repeat(np.arange(len(predicted)), predicted.shape[1]),
             uneven.ravel() if view.doubt.fidelity else None,
+            unseen=np.full(predicted.size, LEAST_CONSTANT_NOISE**2),
         )
 
     def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, Missed]:

@@ -22,7 +22,6 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.separate import Separate, separate
 from updating.thresholds import (
-    IDEALISATION_SHARES,
     LARGEST_SENSITIVITY,
     NEGLIGIBLE_SCALE,
     SHAPE_NOISE_SCALES,
@@ -47,6 +46,8 @@ class Marginal:
         The most probable scale of the noise of the shapes [-].
     share : float
         The most probable size of the doubt in the idealisation, as a share of the largest [-].
+    unseen : float
+        That of the errors that no scatter shows [-].
     """
 
     log_likelihood: float
@@ -55,6 +56,7 @@ class Marginal:
     count: int
     scale: float
     share: float = 1.0
+    unseen: float = 1.0
 
 
 def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
@@ -77,16 +79,16 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
-    shares = (1.0,) if comparison.idealised is None else IDEALISATION_SHARES
+    sizes = comparison.sizes
     prior = dict(zip(scales, np.log(comparison.scale_prior if len(scales) > 1 else (1.0,)), strict=True))
     rows = slice(None) if keep is None else keep
     groups = separate(comparison.nuisance[rows], comparison.scaled[rows])
     parts = [
-        replace(part, share=share)
-        for share in shares
-        for part in _worth_adding(gaussian(comparison.settled(share), scales, keep, groups))
+        replace(part, share=share, unseen=unseen)
+        for share, unseen in sizes
+        for part in _worth_adding(gaussian(comparison.settled(share, unseen), scales, keep, groups))
     ]
-    score = np.array([part.log_likelihood + prior[part.scale] for part in parts]) - np.log(len(shares))
+    score = np.array([part.log_likelihood + prior[part.scale] for part in parts]) - np.log(len(sizes))
     top = parts[int(np.argmax(score))]
     peak = float(score.max())
     return replace(top, log_likelihood=peak + float(np.log(np.sum(np.exp(score - peak)))))

@@ -2,7 +2,7 @@
 
 A transducer feels some of the motion across it, and sits a little askew: an error relative to how the mode moves
 elsewhere, not to how it moves there. All constants that share the transducer have it in common. Near a node of a mode
-it is a large part of them.
+it is a large part of them. The error of a mode's pole stretches its constants alike, too.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
+from updating.likelihood.hit_scatter import level_errors
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import roving
 from updating.thresholds import LEAST_CONSTANT_NOISE
@@ -31,6 +32,11 @@ class Nodes:
 
     setting: Setting
 
+    @property
+    def present(self) -> bool:
+        """Whether several constants share a transducer."""
+        return len(self._shared) > 0
+
     def columns(self, now: Prediction, level: FloatArray) -> FloatArray:
         """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-].
 
@@ -46,7 +52,8 @@ class Nodes:
         if len(self._shared):
             fixed = self._fixed
             moved, before = self._elsewhere(now), self._elsewhere(self.setting.nominal)
-            besides = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(moved**2, axis=0))
+            errors = np.hypot(LEAST_CONSTANT_NOISE, self._stretched(now))
+            besides = errors * np.sqrt(np.mean(moved**2, axis=0))
             # a shape has no sign of its own: one that leaps would be no smooth function of the state
             sign = np.where(np.sum(moved * before, axis=0) < 0, -1.0, 1.0)
             change = now.gain * moved * besides * sign * level
@@ -54,6 +61,12 @@ class Nodes:
                 there = np.flatnonzero(fixed == place)
                 columns[there[:, None], np.arange(n_modes), k, np.arange(n_modes)] = change[there]
         return columns.reshape(n_frf * n_modes, -1)
+
+    def _stretched(self, now: Prediction) -> FloatArray:
+        """Return by how much errors of the poles stretch the constants of each mode, (n_modes,) [-]."""
+        setting = self.setting
+        own = level_errors(setting.measured, setting.scatter)
+        return own if setting.before is None else np.hypot(own, setting.before.level_errors(now))
 
     @cached_property
     def _fixed(self) -> IntArray:

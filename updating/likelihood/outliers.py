@@ -83,7 +83,14 @@ def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Compar
         if outlier.tolerance is not None:
             nuisance[:, comparison.tolerances[outlier.tolerance]] *= outlier.scale
     idealised = None if comparison.idealised is None else worse * comparison.idealised
-    return replace(comparison, variance=worse * comparison.variance, nuisance=nuisance, idealised=idealised)
+    unseen = None if comparison.unseen is None else worse * comparison.unseen
+    return replace(
+        comparison,
+        variance=worse * comparison.variance,
+        nuisance=nuisance,
+        idealised=idealised,
+        unseen=unseen,
+    )
 
 
 def suspects(comparison: Comparison, scale: float, most: int) -> list[Outlier]:

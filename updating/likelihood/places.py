@@ -95,17 +95,36 @@ class Places:
     @cached_property
     def _hit(self) -> tuple[IntArray, FloatArray]:
         test = self.setting.measured
-        return self._doubted(np.where(test.hit < 0, test.seen, test.hit))
+        return self._doubted(np.where(test.hit < 0, test.seen, test.hit), self._by_hits)
 
     @cached_property
     def _seen(self) -> tuple[IntArray, FloatArray]:
-        return self._doubted(self.setting.measured.seen)
+        return self._doubted(self.setting.measured.seen, {})
 
-    def _doubted(self, place: IntArray) -> tuple[IntArray, FloatArray]:
+    @cached_property
+    def _by_hits(self) -> dict[int, float]:
+        """Doubt in where points were hit on the whole, as far as the scatter of the hits tells, by point [m].
+
+        A baseline was hit at the same marks: what is left is the scatter of either test about them.
+        """
+        test, before, own = self.setting.measured, self.setting.before, self.setting.scatter
+        if own is None:
+            return {}
+        found = {
+            point: max(test.position_sigma, float(own.place[test.hit == point].max()))
+            for point in np.unique(test.hit).tolist()
+        }
+        if before is None or before.scatter is None:
+            return found
+        for row, twin in before.twins.items():
+            found[int(test.hit[row])] = float(np.hypot(own.place[row], before.scatter.place[twin]))
+        return found
+
+    def _doubted(self, place: IntArray, known: dict[int, float]) -> tuple[IntArray, FloatArray]:
         """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, dim) [m]."""
         points, rank = np.unique(place, return_inverse=True)
         axes = range(self.setting.measured.points.shape[1])
-        sigma = np.array([[self._sigma(int(p), axis) for axis in axes] for p in points])
+        sigma = np.array([[self._sigma(int(p), axis, known) for axis in axes] for p in points])
         return rank, sigma.reshape(len(points), len(axes))
 
     @staticmethod
@@ -116,11 +135,12 @@ class Places:
         columns[np.arange(n_frf), :, rank] = np.moveaxis(along * sigma[rank].T[:, :, None], 0, -1)
         return columns.reshape(n_frf * n_modes, -1)
 
-    def _sigma(self, point: int, axis: int) -> float:
+    def _sigma(self, point: int, axis: int, known: dict[int, float]) -> float:
         """Return the doubt in a point's place; one at the end of the model was at the end of the specimen [m]."""
         test, spec = self.setting.measured, self.setting.predictor.spec
+        sigma = known.get(point, test.position_sigma)
         if axis >= len(self._loose) or not self._loose[axis]:
-            return test.position_sigma
+            return sigma
         size, at = (spec.length, spec.width)[axis], float(test.points[point, axis])
         at_end = min(at, size - at) < END_REACH * size
-        return float(np.hypot(test.position_sigma, 2 * self._loose[axis])) if at_end else test.position_sigma
+        return float(np.hypot(sigma, 2 * self._loose[axis])) if at_end else sigma

@@ -16,7 +16,7 @@ from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
-from updating.thresholds import IDEALISATION_SHARES, SHAPE_NOISE_SCALES
+from updating.thresholds import SHAPE_NOISE_SCALES
 
 LOOKS = 12
 """How often the severities are refined at most."""
@@ -92,12 +92,13 @@ class Between:
 
     @cached_property
     def _settled(self) -> tuple[Between, ...]:
-        """The same at each size of the doubt in a change's idealisation, where there is one."""
-        if all(evaluation.idealised is None for evaluation in self._ordered):
+        """The same at each size of the doubts whose size is unknown, where there are any."""
+        sizes = max((evaluation.sizes for evaluation in self._ordered), key=len)
+        if len(sizes) == 1:
             return (self,)
         return tuple(
-            Between({s: evaluation.settled(share) for s, evaluation in self.evaluations.items()})
-            for share in IDEALISATION_SHARES
+            Between({s: evaluation.settled(*size) for s, evaluation in self.evaluations.items()})
+            for size in sizes
         )
 
     def log_likelihoods(self, severity: FloatArray) -> FloatArray:

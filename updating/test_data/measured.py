@@ -9,6 +9,7 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.display import Displayed, counted
+from identification.hit_errors import HitErrors
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -65,6 +66,11 @@ class Measured(Displayed):
         The part of ``constants_sigma`` that is each constant's own; None where all of it is [1/kg].
     shared : (n_frf, n_modes, k) array, optional
         The rest: what one standard deviation of each of k independent causes does to all constants [1/kg].
+    hit_errors : HitErrors, optional
+        What each hit adds to the errors of the constants; None where no hits are known.
+    quadrature : (n_modes,) array, optional
+        Mean square of the imaginary parts of the constants, which are real for real modes; None where there are hardly
+        any [1/kg^2].
     phase, phase_sigma : (n_chains, n_modes) arrays, optional
         By how much the complex constants of each measurement chain are turned, from -pi/2 to pi/2, and its
         standard deviation; ``constants`` are turned back by it [rad].
@@ -117,6 +123,8 @@ class Measured(Displayed):
     directions: FloatArray | None = None
     noise: FloatArray | None = None
     shared: FloatArray | None = None
+    hit_errors: HitErrors | None = None
+    quadrature: FloatArray | None = None
     phase: FloatArray | None = None
     phase_sigma: FloatArray | None = None
     channel_group: IntArray | None = None
@@ -192,10 +200,12 @@ class Measured(Displayed):
             "trend",
             "trend_sigma",
             "partners",
+            "quadrature",
         )
         columns = {n: getattr(self, n)[:, keep] for n in across if getattr(self, n) is not None}
         rows = {n: getattr(self, n)[keep] for n in along if getattr(self, n) is not None}
-        return replace(self, **rows, **columns)
+        hits = None if self.hit_errors is None else self.hit_errors.modes(keep)
+        return replace(self, **rows, **columns, hit_errors=hits)
 
     def _headline(self) -> str:
         at = f"{counted(len(self.constants), 'channel')} at {counted(len(self.nodes), 'point')}"

@@ -191,6 +191,8 @@ def measured_from_identified(
             _across(constants.real * signs[:, None], model.constant_shared[both]),
         ),
         shared=model.constant_shared[both] * signs[:, None, None],
+        hit_errors=None if model.hit_errors is None else model.hit_errors.rows(both),
+        quadrature=np.mean(constants.imaginary**2, axis=0),
         phase=constants.phase,
         phase_sigma=constants.phase_sigma,
         channel_group=constants.channel_group,

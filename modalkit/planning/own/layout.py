@@ -76,8 +76,8 @@ def layout_of(test: Measured, spots: tuple[Spot, ...]) -> Layout:
     blank = replace(
         test, points=points, directions=directions, nodes=nodes, seen=seen, hit=hit, rows=None, signs=None,
         trusted=own if own.sum() > 1 else None, phase=None, phase_sigma=None, channel_group=None, slope=None,
-        slope_sigma=None, trend=None, trend_sigma=None, noise=None, shared=None, partners=None, partner_constants=None,
-        unpaired=None, written=(), warnings=(),
+        slope_sigma=None, trend=None, trend_sigma=None, noise=None, shared=None, hit_errors=None, quadrature=None,
+        partners=None, partner_constants=None, unpaired=None, written=(), warnings=(),
     )  # fmt: skip
     return Layout(blank, moves, tuple(mine.tolist()), spots, roving, drive)
 

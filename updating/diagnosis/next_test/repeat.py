@@ -129,6 +129,8 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
         trend_sigma=None,
         noise=None,
         shared=None,
+        hit_errors=None,
+        quadrature=None,
         unpaired=None,
     )
 
