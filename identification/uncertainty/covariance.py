@@ -119,17 +119,21 @@ def hit_errors(fitted: Fitted, factors: NoiseFactors, modes: IntArray) -> HitErr
     fit = fitted.fit
     size = 2.0 * fit.poles.imag[modes]
     white = size * np.sqrt(fit.residue_inverse[:, 1::2][:, modes])
-    freedom, hits = np.zeros(len(white)), [0] * len(white)
-    parts: list[list[FloatArray]] = [[] for _ in hits]
-    for group in factors.by_hits:
+    freedom = np.zeros(len(white))
+    groups: list[list[int]] = [[] for _ in freedom]
+    parts: list[list[FloatArray]] = [[] for _ in freedom]
+    for number, group in enumerate(factors.by_hits):
         freedom[group.rows] += len(group.alone) - 1.0
         for i, row in enumerate(group.rows.tolist()):
+            groups[row].append(number)
             parts[row].append(-size * group.alone[:, i, modes])
-            hits[row] += len(group.alone)
-    deviations = np.zeros((len(white), max(hits), len(modes)))
+    deviations = np.zeros((len(white), max(sum(map(len, part)) for part in parts), len(modes)))
     for row, part in enumerate(parts):
-        deviations[row, : hits[row]] = np.concatenate(part) if part else 0.0
-    return HitErrors(deviations, freedom, white, misfit_factor(fitted.frfs, fitted)[modes])
+        together = np.concatenate([np.zeros((0, len(modes))), *part])
+        deviations[row, : len(together)] = together
+    known = {tuple(group): rank for rank, group in enumerate(map(tuple, groups))}
+    hits = np.array([known[tuple(group)] for group in groups])
+    return HitErrors(deviations, freedom, white, hits, misfit_factor(fitted.frfs, fitted)[modes])
 
 
 def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:

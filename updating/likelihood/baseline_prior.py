@@ -6,8 +6,9 @@ they miss now, in proportion to the level of the mode. Modes are carried over by
 that mixes two of the baseline takes its share of each.
 
 How much of it is missed still depends on what misses it. What a stiffness does to a shape stays where all of a mode
-becomes heavier; what a mass does falls with its share of the modal mass, as the square of the frequency. So as much as
-lies between the two is in doubt, of each mode as a whole.
+becomes heavier; what a mass does falls with its share of the modal mass, as the square of the frequency. A baseline
+shows the sum of the two. Where both are as likely, each is half of the sum, give or take half of its r.m.s. over the
+points: at a point where they cancel either may be there, too.
 
 A baseline shows what the model misses of each mode, e_s = dK_ss / (2 K_ss), and not how that couples the modes. The
 coupling is taken to be as large: of the relative size 2 e_st, with e_st^2 = (e_s^2 + e_t^2) / 2. A mode that an effect
@@ -49,14 +50,11 @@ class Missed:
         Its variance [1/kg^2].
     known : (n_frf, n_modes, n_factors) array
         Sensitivities already known [1/kg].
-    carried : (n_frf, n_modes) array
-        How much more or less of it may be missed still, of each mode as a whole (1 sigma) [1/kg].
     """
 
     constants: FloatArray
     variance: FloatArray
     known: FloatArray
-    carried: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,10 +235,10 @@ class Before:
             Of the present measurement.
         """
         here, there = self._read(state)
-        missed, variance, carried = (np.zeros_like(now.constants) for _ in range(3))
+        missed, variance = np.zeros_like(now.constants), np.zeros_like(now.constants)
         known = np.zeros_like(now.constants_by)
         if not (self.measured.absolute and self.baseline.absolute and len(here)):
-            return Missed(missed, variance, known, carried)
+            return Missed(missed, variance, known)
         gain = measurement_chain(self.measured, state).gain[here, None]
         predicted = self.prediction.constants[there]
         error = self.baseline.constants[there] - predicted
@@ -255,12 +253,12 @@ class Before:
         unseen = (1 - self.seen(now))[:, None] * shares
         missed[here] = gain * (error @ weights.T)
         coupled = (self._coupling(now) * shares + unseen) * level**2
-        variance[here] = gain**2 * (self._own[there] @ (weights**2).T + error**2 @ coupled.T)
+        either = np.mean(error**2, axis=0) @ (weights * (1 - least) / (1 + least)).T ** 2
+        variance[here] = gain**2 * (self._own[there] @ (weights**2).T + error**2 @ coupled.T + either)
         known[here] = gain[:, :, None] * np.einsum(
             "fkp,mk->fmp", self.prediction.constants_by[there], weights
         )
-        carried[here] = gain * (error @ (weights * (1 - least) / (1 + least)).T)
-        return Missed(missed, variance, known, carried)
+        return Missed(missed, variance, known)
 
     def _least_carried(self, now: Prediction) -> FloatArray:
         """Return what of a mode of the baseline is missed still if only masses missed it, (n_modes, n_baseline) [-].

@@ -100,7 +100,6 @@ class Constants(Quantity):
             self._nodes.columns(now, level),
             self._close_modes.columns(now, level),
             self._missed_modes.columns(now, level),
-            *self._carried(missed, level),
             louder,
         ]
         gain = self._gains(predicted)
@@ -124,19 +123,9 @@ class Constants(Quantity):
         now = view.now
         if self.setting.before is None:
             nothing = np.zeros_like(now.constants)
-            return now.constants, now.constants_by, Missed(nothing, nothing, now.constants_by, nothing)
+            return now.constants, now.constants_by, Missed(nothing, nothing, now.constants_by)
         missed = self.setting.before.shapes(now, view.state)
         return now.constants + missed.constants, now.constants_by - missed.known, missed
-
-    def _carried(self, missed: Missed, level: FloatArray) -> list[FloatArray]:
-        """Return a column for each mode: by how much more or less of what a baseline missed is missed still."""
-        if self.setting.before is None:
-            return []
-        frfs, modes = level.shape
-        columns = np.zeros((frfs, modes, modes))
-        every = np.arange(modes)
-        columns[:, every, every] = missed.carried * level
-        return [columns.reshape(level.size, modes)]
 
     def _level(self, constants: FloatArray, view: View) -> FloatArray:
         """Return what predicted constants are multiplied by: sign and scale, and where no level is known the best."""

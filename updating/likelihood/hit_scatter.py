@@ -21,10 +21,6 @@ from identification.hit_errors import HitErrors
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 
-_STEPS = 200
-_SETTLED = 1e-3  # relative change of a variance in one step
-_POOLED = 10.0  # degrees of freedom that the factor of all modes counts as in that of each
-
 
 @dataclass(frozen=True, eq=False)
 class HitScatter:
@@ -114,8 +110,24 @@ def hit_scatter(measured: Measured, prediction: Prediction) -> HitScatter | None
     )
 
 
-def _sizes(errors: HitErrors, loadings: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the factors on the white variance (n_modes,) and the variances of the loadings for one hit, (q,)."""
+def _sizes(
+    errors: HitErrors, loadings: FloatArray, *, steps: int = 200, settled: float = 1e-3, pooled: float = 10.0
+) -> tuple[FloatArray, FloatArray]:
+    """Return the factors on the white variance (n_modes,) and the variances of the loadings for one hit, (q,).
+
+    Parameters
+    ----------
+    errors : HitErrors
+        What each hit adds.
+    loadings : (n_frf, n_modes, q) array
+        Slopes by place, and the constants.
+    steps : int
+        At most so many steps.
+    settled : float
+        Relative change of every variance in one step at which they end [-].
+    pooled : float
+        Degrees of freedom that the factor of all modes counts as in that of each [-].
+    """
     known = errors.freedom > 0
     weight, hits = errors.freedom[known], errors.count()[known]
     loads, white = loadings[known], errors.white[known] ** 2
@@ -130,19 +142,19 @@ def _sizes(errors: HitErrors, loadings: FloatArray) -> tuple[FloatArray, FloatAr
             for part in (slice(0, axes), slice(axes, None))
         ]
     )
-    place, gain = power / np.maximum(by, np.finfo(float).tiny) / 2
-    for _ in range(_STEPS):
+    place, gain = np.divide(power, 2 * by, out=np.zeros_like(by), where=by > 0)
+    for _ in range(steps):
         spread = np.append(np.full(axes, place), gain)
         second, left = _expected(moved, loads, factor * white, spread[None, :] / hits[:, None])
         sizes = np.einsum("j,jq->q", weight * hits, second) / weight.sum()
         ratio = np.einsum("j,jr->r", weight, left / white)
-        new = (ratio + _POOLED * ratio.mean() / weight.sum()) / (weight.sum() + _POOLED)
+        new = (ratio + pooled * ratio.mean() / weight.sum()) / (weight.sum() + pooled)
         new_place, new_gain = float(np.mean(sizes[:axes])), float(sizes[axes])
-        settled = np.allclose(
-            [*new, new_place, new_gain], [*factor, place, gain], rtol=_SETTLED, atol=np.finfo(float).tiny
+        still = np.allclose(
+            [*new, new_place, new_gain], [*factor, place, gain], rtol=settled, atol=np.finfo(float).tiny
         )
         factor, place, gain = new, new_place, new_gain
-        if settled:
+        if still:
             break
     return factor, np.append(np.full(axes, place), gain)
 

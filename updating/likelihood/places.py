@@ -9,6 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
+from updating.likelihood.hit_scatter import HitScatter
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import roving
 from updating.thresholds import END_REACH, REGISTRATION_SHARE
@@ -44,8 +45,8 @@ class Places:
         by_hit = level * now.gain * seen * now.hit_slopes
         by_sensor = level * now.gain * hit * now.seen_slopes
         sensors = [] if bare.all() else [self._by_place(*self._seen, by_sensor)]
-        moved = self._by_place(*self._hit, np.where(bare, by_sensor, by_hit))
-        return [moved, *sensors, self._together(by_hit + by_sensor)]
+        moved = [self._by_place(*doubt, np.where(bare, by_sensor, by_hit)) for doubt in self._hit]
+        return [*moved, *sensors, self._together(by_hit + by_sensor)]
 
     def _as_measured(
         self, now: Prediction, level: FloatArray, measured: FloatArray
@@ -93,39 +94,55 @@ class Places:
         return np.where(np.array(ends) == 1, 0.0, doubts)
 
     @cached_property
-    def _hit(self) -> tuple[IntArray, FloatArray]:
-        test = self.setting.measured
-        return self._doubted(np.where(test.hit < 0, test.seen, test.hit), self._by_hits)
+    def _hit(self) -> list[tuple[IntArray, FloatArray]]:
+        """Where points were hit: the marks, which all FRFs of a point share, and the hits about them, which may differ.
 
-    @cached_property
-    def _seen(self) -> tuple[IntArray, FloatArray]:
-        return self._doubted(self.setting.measured.seen, {})
+        FRFs recorded one after the other have hits of their own at one mark; those recorded at once have the same.
+        """
+        test, own = self.setting.measured, self.setting.scatter
+        point = np.where(test.hit < 0, test.seen, test.hit)
+        if own is None or test.hit_errors is None:
+            return [self._doubted(point, np.full(len(point), test.position_sigma))]
+        marks, about = self._marks_and_hits(own)
+        hits = test.hit_errors.hits
+        pairs = len(np.unique(np.column_stack([point, hits]), axis=0))
+        if pairs == len(np.unique(point)) == len(np.unique(hits)):
+            return [self._doubted(point, np.hypot(marks, about))]
+        ranks, first = np.unique(hits, return_inverse=True)[1], np.unique(hits, return_index=True)[1]
+        axes = test.points.shape[1]
+        return [self._doubted(point, marks), (ranks, np.repeat(about[first][:, None], axes, axis=1))]
 
-    @cached_property
-    def _by_hits(self) -> dict[int, float]:
-        """Doubt in where points were hit on the whole, as far as the scatter of the hits tells, by point [m].
+    def _marks_and_hits(self, own: HitScatter) -> tuple[FloatArray, FloatArray]:
+        """Return the doubts in the mark of each FRF and in the mean place of its hits about it, (n_frf,) each [m].
 
         A baseline was hit at the same marks: what is left is the scatter of either test about them.
         """
-        test, before, own = self.setting.measured, self.setting.before, self.setting.scatter
-        if own is None:
-            return {}
-        found = {
-            point: max(test.position_sigma, float(own.place[test.hit == point].max()))
-            for point in np.unique(test.hit).tolist()
-        }
-        if before is None or before.scatter is None:
-            return found
-        for row, twin in before.twins.items():
-            found[int(test.hit[row])] = float(np.hypot(own.place[row], before.scatter.place[twin]))
-        return found
+        test, before = self.setting.measured, self.setting.before
+        marks, about = np.full(len(test.hit), test.position_sigma), own.place.copy()
+        if before is not None and before.scatter is not None:
+            for row, twin in before.twins.items():
+                marks[row], about[row] = 0.0, np.hypot(own.place[row], before.scatter.place[twin])
+        return marks, about
 
-    def _doubted(self, place: IntArray, known: dict[int, float]) -> tuple[IntArray, FloatArray]:
-        """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, dim) [m]."""
-        points, rank = np.unique(place, return_inverse=True)
-        axes = range(self.setting.measured.points.shape[1])
-        sigma = np.array([[self._sigma(int(p), axis, known) for axis in axes] for p in points])
-        return rank, sigma.reshape(len(points), len(axes))
+    @cached_property
+    def _seen(self) -> tuple[IntArray, FloatArray]:
+        seen = self.setting.measured.seen
+        return self._doubted(seen, np.full(len(seen), self.setting.measured.position_sigma))
+
+    def _doubted(self, place: IntArray, sigma: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, dim) [m].
+
+        A point at the end of the model was at the end of the specimen, wherever that is.
+        """
+        test, spec = self.setting.measured, self.setting.predictor.spec
+        points, first, rank = np.unique(place, return_index=True, return_inverse=True)
+        doubt = np.repeat(sigma[first][:, None], test.points.shape[1], axis=1)
+        for axis, loose in enumerate(self._loose[: doubt.shape[1]].tolist()):
+            if loose:
+                at, size = test.points[points, axis], (spec.length, spec.width)[axis]
+                at_end = np.minimum(at, size - at) < END_REACH * size
+                doubt[:, axis] = np.where(at_end, np.hypot(doubt[:, axis], 2 * loose), doubt[:, axis])
+        return rank, doubt
 
     @staticmethod
     def _by_place(rank: IntArray, sigma: FloatArray, along: FloatArray) -> FloatArray:
@@ -134,13 +151,3 @@ class Places:
         columns = np.zeros((n_frf, n_modes, len(sigma), n_dim))
         columns[np.arange(n_frf), :, rank] = np.moveaxis(along * sigma[rank].T[:, :, None], 0, -1)
         return columns.reshape(n_frf * n_modes, -1)
-
-    def _sigma(self, point: int, axis: int, known: dict[int, float]) -> float:
-        """Return the doubt in a point's place; one at the end of the model was at the end of the specimen [m]."""
-        test, spec = self.setting.measured, self.setting.predictor.spec
-        sigma = known.get(point, test.position_sigma)
-        if axis >= len(self._loose) or not self._loose[axis]:
-            return sigma
-        size, at = (spec.length, spec.width)[axis], float(test.points[point, axis])
-        at_end = min(at, size - at) < END_REACH * size
-        return float(np.hypot(sigma, 2 * self._loose[axis])) if at_end else sigma

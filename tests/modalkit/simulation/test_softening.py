@@ -98,8 +98,8 @@ def test_a_mode_of_another_shape_between_true_ones_has_no_partner() -> None:
         frequency_sigma=np.append(measured.frequency_sigma, 0.1)[order],
         damping=np.append(measured.damping, 0.01)[order],
         damping_sigma=np.append(measured.damping_sigma, 0.001)[order],
-        constants=both, constants_sigma=size, noise=None, shared=None, phase=None, phase_sigma=None, channel_group=None,
-        trend=None, trend_sigma=None,
+        constants=both, constants_sigma=size, noise=None, shared=None, hit_errors=None, quadrature=None, phase=None,
+        phase_sigma=None, channel_group=None, trend=None, trend_sigma=None,
     )  # fmt: skip
     paired = pair_modes(many, Predictor(BEAM, many).predict())
     np.testing.assert_allclose(paired.measured.frequency, frequency)

@@ -325,6 +325,8 @@ def test_a_mode_of_no_cause_is_not_taken_for_one() -> None:
         constants_sigma=np.hstack([test.constants_sigma, np.full_like(stray, 0.05 * np.abs(stray).max())]),
         noise=None,
         shared=None,
+        hit_errors=None,
+        quadrature=None,
     )
     names = ("absorber", "ground_spring", "lumped_mass", "local_stiffness")
     found = diagnose(case_of(more), library=[LIBRARY[n] for n in names])

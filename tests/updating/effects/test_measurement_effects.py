@@ -136,7 +136,7 @@ def test_a_point_of_wrong_level_is_named(roving: Roving) -> None:
     assert found.where.points == (3,)
     gain = found.ranking[0].parameters["channel_gain.gain"]
     assert gain.value == pytest.approx(0.8, rel=0.02)
-    assert 0.005 < gain.high95 - gain.low95 < 0.05
+    assert 0.0005 < gain.high95 - gain.low95 < 0.05
 
 
 def test_a_sensor_of_wrong_level_among_two_is_named() -> None:
