@@ -37,7 +37,9 @@ def drawn(
     )
     # what each hit adds to the error of the mean: the sum of products is its covariance
     deviations = (each - each.mean(axis=1, keepdims=True)) / np.sqrt(HITS * (HITS - 1))
-    errors = HitErrors(deviations, np.full(POINTS, HITS - 1.0), stated * own, np.ones(MODES))
+    errors = HitErrors(
+        deviations, np.full(POINTS, HITS - 1.0), stated * own, np.arange(POINTS), np.ones(MODES)
+    )
     return replace(exactly(predictor, truth, sigma=1e-3), hit_errors=errors), truth, own
 
 

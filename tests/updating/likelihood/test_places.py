@@ -71,7 +71,9 @@ def with_hits(test: Measured, place: float) -> Measured:
     noise = np.sqrt(hits) * white[:, None] * rng.standard_normal((len(test.hit), hits, 5))
     each = np.sum(along * away, axis=0) + noise
     deviations = (each - each.mean(axis=1, keepdims=True)) / np.sqrt(hits * (hits - 1))
-    errors = HitErrors(deviations, np.full(len(test.hit), hits - 1.0), white, np.ones(5))
+    errors = HitErrors(
+        deviations, np.full(len(test.hit), hits - 1.0), white, np.arange(len(test.hit)), np.ones(5)
+    )
     return replace(exactly(predictor, truth, sigma=1e-6), position_sigma=SIGMA, hit_errors=errors)
 
 
