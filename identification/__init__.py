@@ -9,9 +9,14 @@ if TYPE_CHECKING:
     from identification.band.informed import at_cut_edge, informed_band
     from identification.fit.equations.residues import Residues, fit_residues
     from identification.identify import Prepared, identify, prepare
-    from identification.levels.one_level import at_one_level, follows_level, is_smeared
+    from identification.levels.one_level import at_one_level, is_smeared, with_line_doubt
     from identification.levels.products import Growth, growth
-    from identification.levels.slopes import LevelDependence, level_dependence, why_no_level_dependence
+    from identification.levels.slopes import (
+        LevelDependence,
+        follows_level,
+        level_dependence,
+        why_no_level_dependence,
+    )
     from identification.levels.stretched import Stretched, stretched_averages
     from identification.levels.sums import coincidences, combination
     from identification.mac import (
@@ -104,6 +109,7 @@ __all__ = [
     "subspace_mac",
     "to_sdypy",
     "why_no_level_dependence",
+    "with_line_doubt",
 ]
 
 load_on_demand(
@@ -113,11 +119,11 @@ load_on_demand(
         ".band.health": "frf_health mode_coherence",
         ".identify": "Prepared identify prepare",
         ".band.informed": "at_cut_edge informed_band",
-        ".levels.one_level": "at_one_level follows_level is_smeared",
+        ".levels.one_level": "at_one_level is_smeared with_line_doubt",
         ".levels.products": "Growth growth",
         ".levels.sums": "coincidences combination",
         ".levels.stretched": "Stretched stretched_averages",
-        ".levels.slopes": "LevelDependence level_dependence why_no_level_dependence",
+        ".levels.slopes": "LevelDependence follows_level level_dependence why_no_level_dependence",
         ".mac": (
             "auto_mac comac common_dofs coordinate_table ecomac fdac frac frac_table mac mac_table macx modes_table "
             "mpc msf subspace_mac"

@@ -80,8 +80,8 @@ def _still(setup: Setup, seed: int, **changed: float) -> HammerTest:
 
 
 def _recorded(setup: Setup, seed: int) -> float:
-    """Return the peak that is recorded over that of the force: a filter lowers short pulses [-]."""
-    hits = used_hits([(_still(setup, seed, level_scatter=0.0), ())])
+    """Return the peak that is recorded over that of the force, of a pulse of median width: a filter lowers it [-]."""
+    hits = used_hits([(_still(setup, seed, level_scatter=0.0, width_scatter=0.0), ())])
     return float(np.mean([h.levels.mean() for h in hits]) / setup.plan.peak)
 
 

@@ -14,19 +14,24 @@ import numpy as np
 import scipy.fft
 
 from acquisition import HammerTest, Windows
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from acquisition.hits.hammer import Hits
 from identification.fit.equations import basis
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.residues import Residues, fit_residues, synthesise
 from identification.levels.hits import Judged, UsedHits, used_hits
-from identification.levels.slopes import LevelDependence, band_of, is_known, of_single, rows_of, weights_of
+from identification.levels.slopes import (
+    SURE,
+    LevelDependence,
+    band_of,
+    follows_level,
+    is_known,
+    of_single,
+    rows_of,
+    weights_of,
+)
 from identification.model import ModalModel
-
-SURE = 4.0
-"""Slope over its standard deviation from which a mode follows the level. Doubled, weak joints go unnamed; halved, every
-other test of thirty modes names one by chance [-]."""
 
 SMEARED = 0.1
 """Scatter of a mode's frequency over the hits at a point, over its half-power half-width, from which averages are not
@@ -35,11 +40,6 @@ scatter in damping [-]."""
 
 PADDED = 4
 """Length of the transform over that of the record, so that what rings at its end does not come round again [-]."""
-
-
-def follows_level(found: LevelDependence) -> BoolArray:
-    """Return which modes follow the level beyond doubt, (n_modes,)."""
-    return np.asarray(np.nan_to_num(np.abs(found.slope) / found.slope_sigma) > SURE)
 
 
 def is_smeared(model: ModalModel, found: LevelDependence) -> bool:
@@ -95,6 +95,27 @@ def at_one_level(
             first += len(force)
         moved.append((entry, force, motion))
     return _tests(moved)
+
+
+def with_line_doubt(model: ModalModel, found: LevelDependence) -> ModalModel:
+    """Return modes of one level whose standard deviations hold the error of the lines that brought the hits to it.
+
+    Hits are about their own mean level, from where a line leads to the common one. What it errs by is the same at all
+    points, so that no difference between FRFs shows it.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Identified from hits brought to one level.
+    found : LevelDependence
+        How its modes follow the level.
+    """
+    levels = found.levels[:, None]
+    moved = found.level - np.mean(_means(levels, found.point, np.ones_like(levels)))
+    spread = np.array(model.pole_covariance)
+    spread[:, 0, 0] += np.where(follows_level(found), moved * found.slope_sigma, 0.0) ** 2
+    sigma = model.modal.frequency * np.sqrt(spread[:, 0, 0])
+    return replace(model, pole_covariance=spread, modal=replace(model.modal, frequency_sigma=sigma))
 
 
 def hit_residues(model: ModalModel, data: FrfSet, poles: ComplexArray, weights: Weights) -> ComplexArray:

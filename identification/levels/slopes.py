@@ -3,7 +3,8 @@
 A joint that slips or closes makes a structure softer or stiffer the harder it is hit. The poles of each hit alone are
 found by a few steps from those identified, its residues free, so that where exactly a hit landed does not matter.
 Their shifts are then fitted by a curve common to all points and an offset of each point in each run, which takes up
-drift from point to point and what a roving transducer does; its slope is that at the level of the averaged FRFs.
+drift from point to point and what a roving transducer does; its slope is that at the level of the averaged FRFs. Where
+modes agree on how hard a hit was better than its record tells, that level takes the place of the recorded one.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from scipy import stats
 
 from acquisition import Windows
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.frfs.frf import FrfSet
@@ -25,6 +26,7 @@ from identification.fit.equations.projection import Step
 from identification.fit.equations.refine import evaluate, fit_at
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights
+from identification.levels.effective import effective_levels
 from identification.levels.hits import Judged, UsedHits, mean_level, used_hits, why_not
 from identification.model import ModalModel
 
@@ -37,6 +39,11 @@ the force moves a mode the less, the softer it is already. Doubled: few levels t
 
 AT_REST = 0.03
 """Part of a half-width that a step may leave before the next is taken: its error goes as the square [-]."""
+
+
+SURE = 4.0
+"""Slope over its standard deviation from which a mode follows the level. Doubled, weak joints go unnamed; halved, every
+other test of thirty modes names one by chance [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,9 +62,9 @@ class LevelDependence(Displayed):
     level : float
         The level that the averaged FRFs, and so the identified frequencies, stand for [N].
     weakest, strongest : float
-        Range of the levels [N].
+        Range of the recorded levels [N].
     levels : (n_hits,) array
-        Level of each used hit [N].
+        Level of each used hit: by its record, and by the modes that follow it where these are two or more [N].
     point : (n_hits,) int array
         Which point and run each hit belongs to.
     shifts, sigmas : (n_hits, n_modes) arrays
@@ -136,10 +143,43 @@ def level_dependence(
     shifts, variances = (np.array(part) for part in zip(*found, strict=True))
     point = np.repeat(np.arange(len(entries)), [len(e.levels) for e in entries])
     lines = [_slopes(levels, common, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
-    return LevelDependence(
+    recorded = LevelDependence(
         *lines[0], *lines[1], common, float(levels.min()), float(levels.max()), levels, point,
         shifts[:, :, 0], np.sqrt(variances[:, :, 0]), shifts[:, :, 1],
     )  # fmt: skip
+    return _by_effective_levels(recorded, variances)
+
+
+def follows_level(found: LevelDependence) -> BoolArray:
+    """Return which modes follow the level beyond doubt, (n_modes,)."""
+    return np.asarray(np.nan_to_num(np.abs(found.slope) / found.slope_sigma) > SURE)
+
+
+def _by_effective_levels(found: LevelDependence, variances: FloatArray) -> LevelDependence:
+    """Return lines over what the modes show of the levels, for those over the recorded ones.
+
+    Variances (n_hits, n_modes, 2) are those of the shifts of ln f and the damping ratio.
+    """
+    follows = follows_level(found)
+    if np.count_nonzero(follows) < 2:
+        return found
+    effective = effective_levels(
+        found.levels, found.level, found.point,
+        found.shifts[:, follows], variances[:, follows, 0], found.slope[follows], bent=BENT,
+    )  # fmt: skip
+    lines = [
+        _slopes(effective.levels, found.level, found.point, shifts, variances[:, :, i])
+        for i, shifts in enumerate((found.shifts, found.damping_shifts))
+    ]
+    (slope, own), (damping, its_own) = lines
+    return replace(
+        found,
+        slope=slope,
+        slope_sigma=np.hypot(own, slope * effective.scale_sigma),
+        damping_slope=damping,
+        damping_slope_sigma=np.hypot(its_own, damping * effective.scale_sigma),
+        levels=effective.levels,
+    )
 
 
 def rows_of(model: ModalModel) -> dict[tuple[Dof, Dof], int]:

@@ -102,7 +102,7 @@ def _examined(
     state: Examined, tests: Tests, of: Callable[[Data], Select], windows: Windows | None
 ) -> ModalModel:
     """Return the modes of one level that are no products of others, with what is to be said of both."""
-    from identification import follows_level, growth, is_smeared
+    from identification import follows_level, growth, is_smeared, with_line_doubt
 
     grown = growth(state.model, tests, state.found, windows=windows)
     assert grown is not None
@@ -115,6 +115,7 @@ def _examined(
         if smeared:
             state, more = _further(state, _at_one_level(state, tests, of, windows, products), tests, windows)
             products = replace(products, names=(*products.names, *more))
+            state = replace(state, model=with_line_doubt(state.model, state.found))
         state = replace(state, model=replace(state.model, levels=state.found))
         statement = (*statement, _statement(state.model, state.found, smeared))
     statement = (*_on_products(state, products), *statement)
