@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -61,7 +62,7 @@ def _points_right(content: bytes, index: tuple[int, int], pointer: tuple[int, in
     rows, starts = (np.frombuffer(content[a:b], "<i4") for a, b in (index, pointer))
     if starts[0] != 0 or (np.diff(starts) < 0).any() or starts[-1] > len(rows):
         return False
-    columns = [rows[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+    columns = [rows[a:b] for a, b in itertools.pairwise(starts)]
     return all(len(set(c.tolist())) == len(c) and ((c >= 0) & (c < ORDER)).all() for c in columns)
 
 

@@ -113,3 +113,27 @@ def test_nodes_of_another_model_are_refused(tmp_path: Path) -> None:
         read_imported(path, path, tmp_path / "nodes.csv")
     with pytest.raises(StudyError, match=r"missing\.pch: no such file"):
         read_imported(tmp_path / "missing.pch", path, tmp_path / "nodes.csv")
+
+
+LOST = {
+    "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "stands twice"),
+    "the first column": (lambda lines: [*lines[:3], *lines[4:]], "without a column before it"),
+    "another name": (
+        lambda lines: [x.replace("DMIG*   KAAX", "DMIG*   KAA1") for x in lines],
+        "without a header",
+    ),
+    "a number too long": (
+        lambda lines: [x.replace("0D+0", "000000D+0") for x in lines],
+        "more than three fields",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", LOST)
+def test_a_punch_that_would_lose_entries_is_refused(case: str, tmp_path: Path) -> None:
+    change, message = LOST[case]
+    k, m = beam_matrices(ELEMENTS)
+    path = punched(tmp_path / "se.pch", KAAX=k, MAAX=m)
+    path.write_text("\n".join(change(path.read_text().split("\n"))))
+    with pytest.raises(StudyError, match=message):
+        read_labelled(path, "stiffness")

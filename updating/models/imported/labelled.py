@@ -8,7 +8,7 @@ entries in large fields of 16 columns: a column of the matrix with node and dire
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -136,12 +136,13 @@ def _punched(path: Path, kind: str, name: str | None) -> Labelled:
     lines = path.read_bytes().decode("latin-1").splitlines()
     wanted = _named(lines, kind, name, path)
     entries: list[tuple[int, int, int, int, float]] = []
+    headed = {line[8:16].strip() for line in lines if line.startswith("DMIG ")}
     of, cut_off = "", ""  # the matrix in whose columns the line is, and that whose columns another card ended
     at: tuple[int, int] | None = None
     for number, line in enumerate(lines, start=1):
         where = f"{path}, line {number}"
         if line.startswith("DMIG"):
-            of = _matrix_of(line, cut_off, where)
+            of = _matrix_of(line, headed - {cut_off}, where)
             at = _column(line, where) if of == wanted else None
         elif line.startswith("*") and of == wanted:
             if at is None:
@@ -155,18 +156,21 @@ def _punched(path: Path, kind: str, name: str | None) -> Labelled:
     return _once(Labelled(table[:, 2:], table[:, :2], np.array([entry[4] for entry in entries]), str(path)))
 
 
-def _matrix_of(line: str, cut_off: str, where: str) -> str:
+def _matrix_of(line: str, open_to: Collection[str], where: str) -> str:
     """Return the name of the matrix of a header or a column.
 
     Raises
     ------
     StudyError
-        If it is a column of none, or of a matrix that another card has ended: entries would be missing.
+        If it is a column of a matrix without a header, or of one that another card has ended: entries would be missing.
     """
-    name = (line[8:24] if line.startswith("DMIG*") else line[8:16]).strip()
-    if line.startswith("DMIG*") and (not name or name == cut_off):
+    if not line.startswith("DMIG*"):
+        return line[8:16].strip()
+    name = line[8:24].strip()
+    if name not in open_to:
         raise StudyError(
-            f"{where}: a column of {name or 'no matrix'} apart from those before it; punch the file anew"
+            f"{where}: a column of {name or 'no matrix'} without a header, or apart from the columns before it; punch "
+            "the file anew"
         )
     return name
 
@@ -212,7 +216,7 @@ def _fields(line: str, where: str) -> list[str]:
 
 
 def _whole(words: Sequence[str], where: str) -> list[int]:
-    if not all(word.isdigit() and len(word) < 19 for word in words):
+    if not all(word.isascii() and word.isdigit() and len(word) < 19 for word in words):
         raise StudyError(
             f"{where}: node and direction are {words}; fields are 16 columns wide, punch it anew"
         )
