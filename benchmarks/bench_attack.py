@@ -66,7 +66,7 @@ def attack(family: str, seed: int, count: int) -> Iterator[Verdict]:
                 else:
                     yield found
         except EOFError:
-            pass
+            process.join(WAIT)  # it ends by itself: its exit code says how
         process.kill()
         process.join()
         folder.cleanup()

@@ -144,7 +144,13 @@ def scaled(block: Channels, columns: Sequence[Column], more: Sequence[int] = ())
         scale = 1.0 if c.scale is None else c.scale
         factors.append(scale * factor_to_si(unit, c.quantity, f"{block.path}: {c.label}"))
     values = block.numbers([*index, *more]).T
-    values[: len(index)] *= np.array(factors)[:, None]
+    with np.errstate(over="ignore"):
+        values[: len(index)] *= np.array(factors)[:, None]
+    if not np.isfinite(values).all():
+        label = columns[int(np.argmin(np.isfinite(values).all(axis=1)))].label
+        raise InputError(
+            f"{block.where}: {label} holds numbers beyond any in SI units; check its unit, or record it again"
+        )
     return values
 
 

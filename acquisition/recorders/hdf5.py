@@ -22,6 +22,31 @@ _LARGEST_RATIO, _FREE = 100, 10_000_000
 Doubled, a damaged file takes twice the memory [-, bytes]."""
 
 
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+def _check_end(path: Path) -> None:
+    """Refuse a file that goes on behind the end that it states: what stands in it has moved.
+
+    The library sees what is cut off alone. ("HDF5 File Format Specification", II.A, superblock.)
+    """
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        for start in (0, *(512 << k for k in range(size.bit_length()))):
+            file.seek(start)
+            head = file.read(64)
+            if head.startswith(_SIGNATURE) and len(head) == 64:
+                break
+        else:
+            raise ValueError("its signature is missing")
+    version = head[8]
+    width, addresses = (head[9], 12) if version >= 2 else (head[13], 28 if version else 24)
+    at = addresses + 2 * width
+    stated = int.from_bytes(head[at : at + width], "little")
+    if stated != size:
+        raise ValueError(f"it ends at byte {stated} by its head, and has {size}")
+
+
 def named_arrays(path: Path, names: Sequence[str]) -> Named:
     """Return data sets by their path in the file, ``hits/force``.
 
@@ -34,6 +59,7 @@ def named_arrays(path: Path, names: Sequence[str]) -> Named:
     values: dict[str, AnyArray] = {}
     units: dict[str, str] = {}
     try:
+        _check_end(path)
         with h5py.File(path, "r") as file:
             for name in names:
                 found = file.get(name)
@@ -61,6 +87,7 @@ def names_of(path: Path) -> list[str]:
     """
     h5py = library("h5py", path, extra="recorders")
     try:
+        _check_end(path)
         with h5py.File(path, "r") as file:
             return [name for name in _names(file, h5py) if file[name].dtype.kind in "fiuc"]
     except Exception as error:  # the library raises what a damaged file happens to lead to

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from corpus_exchanged import exchanged_families
+from corpus_hdf5 import hdf5_families
+from corpus_labelled import labelled_families
+from corpus_matlab import matlab_families
 from corpus_matrices import matrix_families
 from corpus_nastran import nastran_families
 from corpus_recorders import recorder_families
@@ -18,8 +21,11 @@ def families() -> list[Family]:
         *uff_families(),
         *table_families(),
         *recorder_families(),
+        *hdf5_families(),
         *exchanged_families(),
         *matrix_families(),
         *nastran_families(),
+        *labelled_families(),
+        *matlab_families(),
         *store_families(),
     ]

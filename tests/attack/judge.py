@@ -133,7 +133,10 @@ class Judge:
         """Tell whether a mutant says what the whole file says but for its numbers in binary."""
         if not case.spans:
             return False
-        return self._reading(case, case.repaired(content)).digest == whole.digest
+        try:
+            return self._reading(case, case.repaired(content)).digest == whole.digest
+        except ModalkitError:
+            return False
 
     def _reading(self, case: Case, content: bytes) -> Reading:
         return self.family.reading(self._written(case, content))

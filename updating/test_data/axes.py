@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,17 +33,18 @@ class Axes:
     y: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
-        lengths = np.linalg.norm(self.x), np.linalg.norm(self.y)
+        lengths = math.hypot(*self.x), math.hypot(*self.y)
         if min(lengths) == 0:
             raise StudyError(f"axes: x = {list(self.x)} or y = {list(self.y)} points nowhere")
-        if abs(np.dot(self.x, self.y)) > 1e-3 * lengths[0] * lengths[1]:
+        cosine = sum(a / lengths[0] * (b / lengths[1]) for a, b in zip(self.x, self.y, strict=True))
+        if not abs(cosine) <= 1e-3:
             raise StudyError(f"axes: x = {list(self.x)} and y = {list(self.y)} are not perpendicular")
 
     @property
     def rotation(self) -> FloatArray:
         """Rows are the model's x, y and z in test coordinates, shape (3, 3) [-]."""
-        x = np.asarray(self.x, dtype=float) / np.linalg.norm(self.x)
-        y = np.asarray(self.y, dtype=float) / np.linalg.norm(self.y)
+        x = np.asarray(self.x, dtype=float) / math.hypot(*self.x)
+        y = np.asarray(self.y, dtype=float) / math.hypot(*self.y)
         return np.stack([x, y, np.cross(x, y)])
 
     def to_model(self, points: FloatArray) -> FloatArray:

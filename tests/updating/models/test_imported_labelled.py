@@ -7,59 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from imported_cases import LENGTH, beam_matrices, beam_table, clamp, spec_of
+from labelled_cases import ELEMENTS, abaqus, places, punched
 from scipy import linalg
 
 from acquisition.errors import StudyError
 from updating.models import build_structure
-from updating.models.fields import Sparse
 from updating.models.imported import read_imported
 from updating.models.imported.labelled import read_labelled
-
-ELEMENTS = 6
-LABELS = [(10 * (i // 2 + 1), 3 if i % 2 == 0 else 5) for i in range(2 * (ELEMENTS + 1))]
-"""Node and direction of every row of the free beam."""
-
-
-def lower(matrix: Sparse) -> list[tuple[int, int, float]]:
-    dense = matrix.toarray()
-    return [(i, j, dense[i, j]) for i in range(len(dense)) for j in range(i + 1) if dense[i, j]]
-
-
-def abaqus(path: Path, matrix: Sparse, held: tuple[int, ...] = ()) -> Path:
-    """Write one triangle as Abaqus does: supports keep their diagonal, 1e36."""
-    lines = [
-        "{},{}, {},{}, {:.15e}".format(*LABELS[i], *LABELS[j], value)
-        for i, j, value in lower(matrix)
-        if i not in held and j not in held
-    ]
-    lines += ["{},{}, {},{}, 1.000000000000000e+36".format(*LABELS[i], *LABELS[i]) for i in held]
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
-def punched(path: Path, **matrices: Sparse) -> Path:
-    """Write matrices as Nastran punches them: a line for each column, and for each entry in large fields."""
-    lines = ["$ a comment", "GRID*                 10               0 0.0             0.0             "]
-    for name, matrix in matrices.items():
-        lines.append(f"DMIG    {name:<8}       0       6       2       0               {matrix.shape[0]:8d}")
-        last = -1
-        for i, j, value in sorted(lower(matrix), key=lambda entry: entry[1]):
-            if j != last:
-                lines.append(f"DMIG*   {name:<16}{LABELS[j][0]:16d}{LABELS[j][1]:16d}")
-                last = j
-            number = f"{value:16.9E}".replace("E", "D")
-            lines.append(f"*       {LABELS[i][0]:16d}{LABELS[i][1]:16d}{number}")
-    path.write_text("\n".join([*lines, "$", "ENDDATA"]) + "\n")
-    return path
-
-
-def places(path: Path, *more: str) -> Path:
-    rows = [
-        f"{10 * (i + 1)}, {LENGTH * i / ELEMENTS!r}, 0, 0, {'tip' if i == ELEMENTS else ''}"
-        for i in range(ELEMENTS + 1)
-    ]
-    path.write_text("\n".join(["node, x, y, z, sets", *rows, *more]) + "\n")
-    return path
 
 
 def exact(clamped: bool) -> np.ndarray:
@@ -159,3 +113,27 @@ def test_nodes_of_another_model_are_refused(tmp_path: Path) -> None:
         read_imported(path, path, tmp_path / "nodes.csv")
     with pytest.raises(StudyError, match=r"missing\.pch: no such file"):
         read_imported(tmp_path / "missing.pch", path, tmp_path / "nodes.csv")
+
+
+LOST = {
+    "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "stands twice"),
+    "the first column": (lambda lines: [*lines[:3], *lines[4:]], "without a column before it"),
+    "another name": (
+        lambda lines: [x.replace("DMIG*   KAAX", "DMIG*   KAA1") for x in lines],
+        "without a header",
+    ),
+    "a number too long": (
+        lambda lines: [x.replace("0D+0", "000000D+0") for x in lines],
+        "more than three fields",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", LOST)
+def test_a_punch_that_would_lose_entries_is_refused(case: str, tmp_path: Path) -> None:
+    change, message = LOST[case]
+    k, m = beam_matrices(ELEMENTS)
+    path = punched(tmp_path / "se.pch", KAAX=k, MAAX=m)
+    path.write_text("\n".join(change(path.read_text().split("\n"))))
+    with pytest.raises(StudyError, match=message):
+        read_labelled(path, "stiffness")

@@ -8,7 +8,7 @@ entries in large fields of 16 columns: a column of the matrix with node and dire
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,6 +29,9 @@ PUNCHED = (".pch", ".dmig")
 
 FIELD = 16
 """Columns of a large field; the first is half as wide."""
+
+CARD = 80
+"""Columns of a line."""
 
 SYMMETRIC, SQUARE, REAL = "6", "1", ("1", "2")
 """What form and type of a DMIG header may be."""
@@ -114,25 +117,62 @@ def _of_abaqus(path: Path) -> Labelled:
     row, of_row, column, of_column, value = columns_of(path.read_bytes().replace(b",", b" "), "iiiif", path)
     if not len(value):
         raise StudyError(f"{path}: holds no entry; export it anew")
-    return Labelled(np.stack([row, of_row], 1), np.stack([column, of_column], 1), value, str(path))
+    return _once(Labelled(np.stack([row, of_row], 1), np.stack([column, of_column], 1), value, str(path)))
+
+
+def _once(found: Labelled) -> Labelled:
+    """Refuse a matrix in which an entry stands twice."""
+    places, counts = np.unique(np.hstack([found.row, found.column]), axis=0, return_counts=True)
+    if len(places) < len(found.value):
+        node, direction, other, way = places[np.argmax(counts)].tolist()
+        raise StudyError(
+            f"{found.source}: the entry of {node}.{direction} and {other}.{way} (node.direction) stands twice; write "
+            "the file anew"
+        )
+    return found
 
 
 def _punched(path: Path, kind: str, name: str | None) -> Labelled:
     lines = path.read_bytes().decode("latin-1").splitlines()
-    wanted = [_named(lines, kind, name, path)]
+    wanted = _named(lines, kind, name, path)
     entries: list[tuple[int, int, int, int, float]] = []
+    headed = {line[8:16].strip() for line in lines if line.startswith("DMIG ")}
+    of, cut_off = "", ""  # the matrix in whose columns the line is, and that whose columns another card ended
     at: tuple[int, int] | None = None
     for number, line in enumerate(lines, start=1):
-        if line.startswith("DMIG") and line[8:24].split()[:1] == wanted:
-            at = _column(line, f"{path}, line {number}")
-        elif line.startswith("*") and at is not None:
-            entries.append((*at, *_entry(line, f"{path}, line {number}")))
+        where = f"{path}, line {number}"
+        if line.startswith("DMIG"):
+            of = _matrix_of(line, headed - {cut_off}, where)
+            at = _column(line, where) if of == wanted else None
+        elif line.startswith("*") and of == wanted:
+            if at is None:
+                raise StudyError(f"{where}: an entry of {of} without a column before it; punch the file anew")
+            entries.append((*at, *_entry(line, where)))
         elif line[:1] not in ("$", "*"):
-            at = None
+            of, cut_off = "", of or cut_off
     if not entries:
-        raise StudyError(f"{path}: {wanted[0]} has no entries in large fields of 16 columns; punch it anew")
+        raise StudyError(f"{path}: {wanted} has no entries in large fields of 16 columns; punch it anew")
     table = np.array([entry[:4] for entry in entries], dtype=np.int64)
-    return Labelled(table[:, 2:], table[:, :2], np.array([entry[4] for entry in entries]), str(path))
+    return _once(Labelled(table[:, 2:], table[:, :2], np.array([entry[4] for entry in entries]), str(path)))
+
+
+def _matrix_of(line: str, open_to: Collection[str], where: str) -> str:
+    """Return the name of the matrix of a header or a column.
+
+    Raises
+    ------
+    StudyError
+        If it is a column of a matrix without a header, or of one that another card has ended: entries would be missing.
+    """
+    if not line.startswith("DMIG*"):
+        return line[8:16].strip()
+    name = line[8:24].strip()
+    if name not in open_to:
+        raise StudyError(
+            f"{where}: a column of {name or 'no matrix'} without a header, or apart from the columns before it; punch "
+            "the file anew"
+        )
+    return name
 
 
 def _named(lines: Sequence[str], kind: str, name: str | None, path: Path) -> str:
@@ -147,7 +187,7 @@ def _named(lines: Sequence[str], kind: str, name: str | None, path: Path) -> str
 def _column(line: str, where: str) -> tuple[int, int] | None:
     """Return node and direction of a column; None of the header, whose form and type are checked."""
     if line.startswith("DMIG*"):
-        node, direction = _whole(_fields(line)[1:3], where)
+        node, direction = _whole(_fields(line, where)[1:3], where)
         return node, direction
     form, kind = line[24:32].strip(), line[32:40].strip()
     if form not in (SYMMETRIC, SQUARE) or kind not in REAL:
@@ -159,7 +199,7 @@ def _column(line: str, where: str) -> tuple[int, int] | None:
 
 
 def _entry(line: str, where: str) -> tuple[int, int, float]:
-    fields = _fields(line)
+    fields = _fields(line, where)
     node, direction = _whole(fields[:2], where)
     word = re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", fields[2].upper().replace("D", "E"))
     if not NUMBER.fullmatch(word) or not np.isfinite(float(word)):
@@ -167,12 +207,16 @@ def _entry(line: str, where: str) -> tuple[int, int, float]:
     return node, direction, float(word)
 
 
-def _fields(line: str) -> list[str]:
-    return [line[8 + FIELD * i : 8 + FIELD * (i + 1)].strip() for i in range(4)]
+def _fields(line: str, where: str) -> list[str]:
+    """Return the first three large fields of a line; a real matrix has nothing in the fourth."""
+    *fields, rest = [line[8 + FIELD * i : 8 + FIELD * (i + 1)].strip() for i in range(4)]
+    if rest or line[CARD:].strip():
+        raise StudyError(f"{where}: more than three fields of {FIELD} columns; punch the file anew")
+    return fields
 
 
 def _whole(words: Sequence[str], where: str) -> list[int]:
-    if not all(word.isdigit() and len(word) < 19 for word in words):
+    if not all(word.isascii() and word.isdigit() and len(word) < 19 for word in words):
         raise StudyError(
             f"{where}: node and direction are {words}; fields are 16 columns wide, punch it anew"
         )

@@ -62,7 +62,7 @@ def read_matlab(path: Path) -> Sparse:
         raise StudyError(f"{path}: not a .mat of version 5 to 7; {_AGAIN}")
     try:
         arrays = (_unpacked(element, order, path) for element in _elements(raw[_HEAD:], order))
-        found = [v for a in arrays if a.kind == _MATRIX for v in [_variable(a.body, order, path)] if v]
+        found = [v for a in arrays for v in [_variable(_array(a), order, path)] if v]
     except (ValueError, KeyError, IndexError, struct.error, zlib.error) as error:
         raise StudyError(f"{path}: not a whole .mat ({' '.join(str(error).split())}); {_AGAIN}") from error
     if len(found) != 1:
@@ -102,6 +102,13 @@ def _unpacked(element: _Element, order: str, path: Path) -> _Element:
     if len(found) != 1:
         raise ValueError(f"{len(found)} elements packed as one")
     return found[0]
+
+
+def _array(element: _Element) -> bytes:
+    """Return the body of an element that is an array, as all variables are."""
+    if element.kind != _MATRIX:
+        raise ValueError(f"an element of type {element.kind} among its variables")
+    return element.body
 
 
 def _variable(body: bytes, order: str, path: Path) -> _Variable | None:

@@ -177,7 +177,8 @@ def read_places(path: Path) -> Nodes:
     if not path.is_file():
         raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
     values, names = _columns_of(path, COLUMNS[:4])
-    if values.isna().to_numpy().any() or (values["node"] != values["node"].round()).any():
+    stated = values["node"]
+    if values.isna().to_numpy().any() or (stated != stated.round()).any() or (stated.abs() > 2**53).any():
         raise StudyError(f"{path}: a node or a coordinate is missing or no number; give node, x, y, z")
     node = values["node"].to_numpy(dtype=np.int64)
     at = dict(zip(node.tolist(), map(tuple, values[["x", "y", "z"]].to_numpy().tolist()), strict=True))
