@@ -19,6 +19,10 @@ from identification.mac.coordinates import comac, ecomac
 from identification.mac.frfs import frac
 from identification.mac.shapes import auto_mac, mac, mpc
 
+UNSEEN = 1e-6
+"""Largest component at the common degrees of freedom, over that at all, under which a mode does not move there [-]:
+rounding leaves 1e-16 to 1e-7 of it, in any shape."""
+
 
 @dataclass(frozen=True, eq=False)
 class CommonDofs(Displayed):
@@ -29,7 +33,7 @@ class CommonDofs(Displayed):
     dofs : tuple of Dof
         Degrees of freedom, directions positive, in the order of the first set.
     first, second : (n_dofs, n_modes) complex arrays
-        Shapes there, signs of directions applied [as in the sets].
+        Shapes there, signs of directions applied, 0 for a mode that does not move there [as in the sets].
     """
 
     dofs: tuple[Dof, ...]
@@ -67,7 +71,9 @@ def _rows(modes: ModalData, place: dict[Dof, tuple[int, int]], wanted: tuple[Dof
         return np.zeros((0, len(modes)), complex)
     index = np.array([place[d][0] for d in wanted], dtype=int)
     sign = np.array([place[d][1] for d in wanted], dtype=float)
-    return np.asarray(modes.shapes[index] * sign[:, None])
+    shapes = modes.shapes[index] * sign[:, None]
+    moves = np.abs(shapes).max(axis=0, initial=0.0) >= UNSEEN * np.abs(modes.shapes).max(axis=0, initial=0.0)
+    return np.asarray(np.where(moves, shapes, 0.0))
 
 
 def mode_names(modes: ModalData) -> list[str]:

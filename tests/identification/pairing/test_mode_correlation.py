@@ -167,3 +167,13 @@ def test_subspace_mac_against_projections(rng):
     assert np.isnan(subspace_mac(a[:3], b[:3]))
     assert np.isnan(subspace_mac(a[:, [0, 0]], b))
     assert np.isnan(subspace_mac(a, b[:, :1]))
+
+
+def test_a_mode_that_does_not_move_at_the_common_points_is_like_none():
+    """Across the directions measured rounding leaves a shape, here that of another mode."""
+    shapes = beam_shapes(9, 3)
+    across = np.vstack([1e-12 * shapes[:, 1], np.ones(9)]).reshape(-1)
+    model = np.column_stack([np.vstack([shapes, np.zeros_like(shapes)]), across])
+    found = correlate(modes(HERTZ[:3], shapes), modes([50.0, 90.0, 81.0, 80.0], model))
+    assert indices(found) == [(0, 0), (1, 1), (2, 2)]
+    assert (found.mac[:, 3] == 0).all()

@@ -236,3 +236,19 @@ def test_a_structure_that_bounces_on_its_supports_is_no_mode_far_above_the_band(
     assert paired.order.tolist() == [0, 1, 2, 3]
     assert len(paired.warnings) == 1
     assert "no partner" in paired.warnings[0]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_rounding_leaves_of_a_mode_across_the_points_is_like_nothing(seed: int) -> None:
+    """A mode that no point can see lies nearer in frequency, and rounding gave it the shape of the measured one."""
+    rng = np.random.default_rng(seed)
+    test = seen_as(MODEL.select(np.array([0, 2, 3])))
+    blind = MODEL.constants.copy()
+    blind[:, 1] = 1e-13 * (MODEL.constants[:, 2] + 0.1 * rng.standard_normal(len(blind)))
+    model = replace(MODEL, constants=blind, frequency=MODEL.frequency.copy())
+    model.frequency[1] = test.frequency[1]
+    model.frequency[2] = 1.2 * test.frequency[1]
+    paired = pair_modes(test, model)
+    assert paired.order.tolist() == [0, 2, 3]
+    assert (mac_of_constants(test, model)[:, 1] == 0).all()
+    assert MODEL.constants[0, 1] != 0 and mac_of_constants(test, MODEL)[:, 1].max() > 0
