@@ -8,6 +8,7 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.hits.checks import noise_level, pulse_ends, without_drift
+from acquisition.hits.force_tail import with_tails
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.warned import Consequential
 
@@ -24,6 +25,8 @@ STANDS_OUT = 6.0
 def pulses_alone(test: HammerTest, *, averaged: bool = True) -> tuple[HammerTest, tuple[str, ...]]:
     """Return a test whose forces have no drift, and no noise beside their pulses where it counts; what was done.
 
+    Forces that a window cut off while they rang ring on, see `with_tails`.
+
     At every spectral line the force holds the noise of its whole record, while the pulse is over at once. In a record
     far longer than the ringing this noise reaches the size of the pulse; then it makes the few lines of a peak go up
     and down at random, and damping is wrong. Noise of the responses does no such harm: it is independent of the
@@ -36,6 +39,7 @@ def pulses_alone(test: HammerTest, *, averaged: bool = True) -> tuple[HammerTest
     averaged : bool
         Whether all hits are averaged; else each is used by itself, and none averages the noise of another.
     """
+    test, rung = with_tails(test)
     fade = test.decay / test.rate
     level = [without_drift(p.force, fade=fade) for p in test.points]
     pulses = [np.array([_around_pulse(wave) for wave in waves]) for waves in level]
@@ -50,14 +54,14 @@ def pulses_alone(test: HammerTest, *, averaged: bool = True) -> tuple[HammerTest
     bias = noise / max(impulse, np.finfo(float).tiny)
     if max(np.sqrt(bias / (len(powers) if averaged else 1)), bias) <= COUNTS:
         points = tuple(_drifting(p, waves) for p, waves in zip(test.points, level, strict=True))
-        return replace(test, points=points), ()
+        return replace(test, points=points), rung
     alone = [replace(p, force=w * near) for p, w, near in zip(test.points, level, pulses, strict=True)]
     length = float(np.median(np.concatenate([near.sum(axis=-1) for near in pulses]))) / test.rate
     text = (
         f"{test.source}: noise of the force, summed over records of {test.duration:.3g} s, reaches "
         f"{100 * np.sqrt(bias):.2g} % of a pulse; the force is set to zero but for {length:.2g} s about each pulse"
     )
-    return replace(test, points=tuple(alone)), (Consequential(text),)
+    return replace(test, points=tuple(alone)), (*rung, Consequential(text))
 
 
 def _drifting(hits: Hits, level: FloatArray) -> Hits:
