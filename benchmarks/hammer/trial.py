@@ -24,6 +24,7 @@ from acquisition import (
     state_window,
 )
 from acquisition.errors import EstimationError
+from acquisition.synthetic import ModalSystem
 from hammer.counts import Outcome, counted
 from hammer.kinds import DRAWN
 from hammer.setups import Setup
@@ -71,18 +72,26 @@ def _on_lines(setup: Setup, seed: int) -> Trial:
     return inside & (np.abs(setup.system.poles) < 0.97 * top), lambda: identify(frfs)
 
 
-def _still(setup: Setup, seed: int, **changed: float) -> HammerTest:
+def _still(setup: Setup, seed: int) -> HammerTest:
     """Hit it once a point, without noise."""
     quiet = replace(
         setup.plan, force_noise=0.0, response_noise=0.0, adc_bits=None, position_sigma=0.0, drift=0.0, hits=1
     )
-    return hammer_test(setup.system, replace(quiet, **changed), rng=np.random.default_rng([seed, 1]))
+    return hammer_test(setup.system, quiet, rng=np.random.default_rng([seed, 1]))
 
 
 def _recorded(setup: Setup, seed: int) -> float:
-    """Return the peak that is recorded over that of the force, of a pulse of median width: a filter lowers it [-]."""
-    hits = used_hits([(_still(setup, seed, level_scatter=0.0, width_scatter=0.0), ())])
-    return float(np.mean([h.levels.mean() for h in hits]) / setup.plan.peak)
+    """Return the mean peak that is recorded over that of the force, of the hits themselves: a filter lowers it [-]."""
+    true: dict[tuple[int, int], float] = {}
+
+    def listened(point: int, hit: int, level: float) -> ModalSystem:
+        true[point, hit] = level
+        return setup.system
+
+    quiet = replace(setup.plan, force_noise=0.0, response_noise=0.0, adc_bits=None)
+    test = hammer_test(setup.system, quiet, rng=np.random.default_rng([seed, 1]), at_hit=listened)
+    recorded = [h.levels for h in used_hits([(test, ())])]
+    return float(np.mean(np.concatenate(recorded)) / np.mean(list(true.values())))
 
 
 def _modes(test: HammerTest, setup: Setup) -> ModalModel:
