@@ -209,6 +209,7 @@ def plain_blocks(
             body.append(line)
         elif body and style is not None:
             _check_above(above, first - 1, style, least, path)
+            _check_behind_heading(above, style, wanted, path, first - 1)
             names = _heading(above, style, wanted) or (blocks[-1].names if blocks else ())
             rows = _without_trailer(body, style)
             blocks.append(Block(path=path, names=names, lines=rows, first=first, style=style))
@@ -280,6 +281,23 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
             )
 
 
+def _check_behind_heading(
+    above: Sequence[str], style: Style, wanted: Collection[str], path: Path, number: int
+) -> None:
+    """Refuse a number between the headings that are asked for and the first row: what holds it is a broken row.
+
+    One digit alone may be a unit, that of numbers without dimension.
+    """
+    if not above or not wanted or all(not _holds(line, style, wanted) for line in above[:-1]):
+        return
+    fields = style.split(above[-1])
+    if any(len(field) > 1 and style.is_number(field) for field in fields) and len(fields) >= len(wanted):
+        raise InputError(
+            f"{path}, line {number}: {above[-1].strip()[:60]!r} holds a number and is no row of numbers; mend or "
+            "remove it"
+        )
+
+
 _OF_NUMBERS = frozenset("0123456789.,eE+-")
 _LIKE = re.compile(r"(?=[^\d]*+\d)[\s\d.,eE+-]*+")
 """Words of characters that numbers have."""
@@ -296,9 +314,17 @@ def _nearly(field: str) -> bool:
 
 def _heading(above: Sequence[str], style: Style, wanted: Collection[str]) -> tuple[str, ...]:
     """Return the headings among the lines above numbers: the last line that holds what is asked for, or the last."""
-    rows = [tuple(style.split(line.lstrip("#% "))) for line in above]
-    fitting = [row for row in rows if set(wanted) <= set(row)]
-    return (fitting or rows or [()])[-1]
+    fitting = [line for line in above if _holds(line, style, wanted)] or above
+    return _names(fitting[-1], style) if fitting else ()
+
+
+def _names(line: str, style: Style) -> tuple[str, ...]:
+    return tuple(style.split(line.lstrip("#% ")))
+
+
+def _holds(line: str, style: Style, wanted: Collection[str]) -> bool:
+    """Tell whether a line holds every heading that is asked for."""
+    return set(wanted) <= set(_names(line, style))
 
 
 def _style(line: str, layout: Layout, least: int) -> Style | None:

@@ -68,6 +68,7 @@ def named_arrays(path: Path, names: Sequence[str]) -> Named:
                         f"{path}: no data set {name!r} in it; there are {_listed(_names(file, h5py))}"
                     )
                 _check_size(found, name, path)
+                _check_bits(found, name, path, h5py)
                 values[name] = np.asarray(found[()])
                 units[name] = next((unit for key in _UNITS if (unit := _text(found.attrs.get(key)))), "")
     except InputError:
@@ -107,6 +108,20 @@ def _check_size(found: Any, name: str, path: Path) -> None:
             f"{path}: {name!r} takes {size} bytes, over {_LARGEST_RATIO} times the file's size; measured numbers do "
             "not: the file is damaged, or holds none"
         )
+
+
+def _check_bits(found: Any, name: str, path: Path, h5py: Any) -> None:
+    """Refuse numbers whose sign, exponent and digits stand elsewhere than in those of any computer.
+
+    A file states where they stand, without a checksum; the library takes any places. ("HDF5 File Format
+    Specification", IV.A.2.d, datatype message.)
+    """
+    if found.dtype.kind not in "fiu" or h5py.h5t.py_create(found.dtype, logical=True) == found.id.get_type():
+        return
+    raise InputError(
+        f"{path}: {name!r} states a layout of bits that no {8 * found.dtype.itemsize}-bit number has; the file is "
+        "damaged, or export it again with ordinary numbers"
+    )
 
 
 def _text(value: Any) -> str:

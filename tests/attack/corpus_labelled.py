@@ -75,12 +75,12 @@ def _punch_judge(original: bytes, mutant: bytes) -> bool:
 
 
 def _nodes_judge(original: bytes, mutant: bytes) -> bool:
-    """Judge a table of nodes whose names of sets, and whose last heading, are words for the user alone."""
+    """Judge a table of nodes whose names of sets, below the heading, are words for the user alone."""
     return undetectable.cells(*(_SETS.sub(rb"\1", content) for content in (original, mutant)))
 
 
-_SETS = re.compile(rb"(?m)^((?:[^,\n]*,){3}[^,\n]*),.*$")
-"""A line of a table of nodes, and what is in front of its names of sets."""
+_SETS = re.compile(rb"(?<=\n)((?:[^,\n]*,){3}[^,\n]*),.*")
+"""A line of a table of nodes below the first, and what is in front of its names of sets."""
 
 
 def _other_exponents(content: bytes) -> bytes:

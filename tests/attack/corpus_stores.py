@@ -19,6 +19,7 @@ from modalkit.blind.seal import Seal, seal
 from modalkit.blind.store import Store
 from modalkit.blind.trial import Truth
 from modalkit.study.read import read_study
+from updating.problem.stated_doubts import check_doubts
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 NOTHING: dict[str, Any] = json.loads((Path(__file__).resolve().parents[1] / "no_gap.json").read_text())
@@ -65,6 +66,7 @@ def _read_study(path: Path) -> tuple[Any, Sequence[str]]:
     study = read_study(path)
     plain = study.model_dump(exclude={"path"})
     study.axes(study.test)
+    check_doubts(study.doubts(), study.spec(), study.update.named)
     return [plain, study.spec(), study.doubts().damping, study.accepted(), study.surroundings()], ()
 
 

@@ -57,6 +57,8 @@ def averages_of(lines: Sequence[str]) -> tuple[int, str]:
     """Return the number of averages that ID lines state, 0 if none, and what is odd about it."""
     found = _AVERAGES.search(_joined(lines))
     if found is None:
+        if any(line[:LENGTH].strip(" :=").lower() == "averages" for line in lines):
+            return 0, "its ID lines speak of averages without a number"
         return 0, _misspelt(_joined(lines), "averages")
     count = int(found[1][:12])
     if count <= _MOST_AVERAGES:

@@ -235,6 +235,40 @@ def test_a_file_that_is_none_of_its_kind_is_one_line(tmp_path: Path, name: str) 
     assert str(tmp_path / name) in str(error.value) and "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("newer", [False, True])
+@pytest.mark.parametrize("ahead", [0, 512])
+def test_an_hdf5_file_that_goes_on_behind_its_end_is_refused(tmp_path: Path, newer: bool, ahead: int) -> None:
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w", userblock_size=ahead, libver="latest" if newer else "earliest") as file:
+        file["fs"], file["force"], file["acc"] = RATE, FORCE, MOTION
+    assert read_columns(path, layout(rate_variable="fs")).rate == RATE
+    with path.open("ab") as file:
+        file.write(b"1.0\n")
+    with pytest.raises(InputError, match=r"it ends at byte \d+ by its head"):
+        read_columns(path, layout(rate_variable="fs"))
+
+
+def test_hdf5_numbers_of_fewer_digits_than_their_bits_have_are_refused(tmp_path: Path) -> None:
+    kind = h5py.h5t.IEEE_F64LE.copy()
+    kind.set_fields(63, 52, 11, 0, 32)
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w", libver="earliest") as file:
+        file["fs"], file["force"] = RATE, FORCE
+        space = h5py.h5s.create_simple(MOTION.shape)
+        h5py.h5d.create(file.id, b"acc", kind, space).write(space, space, np.ascontiguousarray(MOTION))
+    with pytest.raises(InputError, match="'acc' states a layout of bits that no 64-bit number has"):
+        read_columns(path, layout(rate_variable="fs"))
+
+
+@pytest.mark.parametrize("kind", [">f8", "<f4", "<i2", ">i4", "u1"])
+def test_hdf5_numbers_of_any_ordinary_kind_are_read(tmp_path: Path, kind: str) -> None:
+    values = np.round(30 * np.abs(FORCE)).astype(kind)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["fs"], file["force"], file["acc"] = RATE, values, values
+    found = read_columns(tmp_path / "a.h5", layout(rate_variable="fs"))
+    np.testing.assert_array_equal(found.points[0].force, np.asarray(values, dtype=float))
+
+
 @pytest.mark.parametrize(("name", "library"), [("a.tdms", "nptdms"), ("a.h5", "h5py")])
 def test_a_library_that_is_not_there_is_named_with_its_extra(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, library: str

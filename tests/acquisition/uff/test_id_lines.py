@@ -31,11 +31,22 @@ def test_misspelt_averages_are_named_with_what_is_read() -> None:
         "its ID lines say 'averges': not taken; what is read is 'averages 5'",
     )
     assert averages_of(["averages 5"]) == (5, "")
+    for lost in ("averages", " Averages : "):
+        assert averages_of(["beam", lost, "NONE"]) == (0, "its ID lines speak of averages without a number")
 
 
 @pytest.mark.parametrize(
     "text",
-    ["", "beam 5", "range 5", "average beam", "measured 2024 window 5", "coverage map 12", "exponential 8"],
+    [
+        "",
+        "beam 5",
+        "range 5",
+        "average beam",
+        "linear averages",
+        "measured 2024 window 5",
+        "coverage map 12",
+        "exponential 8",
+    ],
 )
 def test_other_words_are_left_alone(text: str) -> None:
     assert decay_of([text])[1] == averages_of([text])[1] == ""

@@ -118,6 +118,10 @@ def test_nodes_of_another_model_are_refused(tmp_path: Path) -> None:
 LOST = {
     "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "stands twice"),
     "the first column": (lambda lines: [*lines[:3], *lines[4:]], "without a column before it"),
+    "the first column run into its header": (
+        lambda lines: [*lines[:3], "DMIG                 10               3 1.0D+06", *lines[5:]],
+        "line 4: no header of a matrix",
+    ),
     "another name": (
         lambda lines: [x.replace("DMIG*   KAAX", "DMIG*   KAA1") for x in lines],
         "without a header",
@@ -137,3 +141,12 @@ def test_a_punch_that_would_lose_entries_is_refused(case: str, tmp_path: Path) -
     path.write_text("\n".join(change(path.read_text().split("\n"))))
     with pytest.raises(StudyError, match=message):
         read_labelled(path, "stiffness")
+
+
+def test_a_support_between_two_degrees_of_freedom_is_refused(tmp_path: Path) -> None:
+    """Its number, 1e36, beside nothing on the diagonal is beyond any ratio."""
+    k, m = beam_matrices(ELEMENTS)
+    stiffness, mass = abaqus(tmp_path / "k.mtx", k, held=(0, 1)), abaqus(tmp_path / "m.mtx", m)
+    stiffness.write_text(stiffness.read_text().replace("10,3, 10,3, 1.0", "10,3, 100,3, 1.0"))
+    with pytest.raises(StudyError, match=r"not symmetric: .* 1e\+36"):
+        read_imported(stiffness, mass, places(tmp_path / "nodes.csv"))

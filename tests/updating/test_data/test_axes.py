@@ -49,3 +49,11 @@ def test_axes_that_are_not_perpendicular_are_refused(
 ) -> None:
     with pytest.raises(StudyError, match=r"not perpendicular|points nowhere"):
         Axes(x=x, y=y)
+
+
+@pytest.mark.parametrize("length", [1e300, 1e-300])
+def test_axes_of_any_length_turn_alike(length: float) -> None:
+    axes = Axes(x=(0.0, length, 0.0), y=(-length, 0.0, 0.0))
+    np.testing.assert_array_equal(axes.rotation, [[0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    with pytest.raises(StudyError, match="not perpendicular"):
+        Axes(x=(length, 0.0, 0.0), y=(length, length, 0.0))

@@ -47,10 +47,9 @@ def symmetric(matrix: Sparse, source: str) -> Sparse:
         return Sparse(matrix + lower.T + upper.T)
     difference = abs(matrix - matrix.T).tocoo()
     scale = np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
-    size = (
-        difference.data / (scale[difference.row] * scale[difference.col]) if difference.nnz else np.zeros(1)
-    )
-    if size.max() > SYMMETRY:
+    with np.errstate(over="ignore"):  # beside nothing on the diagonal any number is too much
+        size = difference.data / (scale[difference.row] * scale[difference.col])
+    if size.max(initial=0.0) > SYMMETRY:
         worst = int(np.argmax(size))
         i, j = int(difference.row[worst]), int(difference.col[worst])
         raise StudyError(

@@ -162,10 +162,17 @@ def _matrix_of(line: str, open_to: Collection[str], where: str) -> str:
     Raises
     ------
     StudyError
-        If it is a column of a matrix without a header, or of one that another card has ended: entries would be missing.
+        If it is a header without a name or without the zero behind it, a column of a matrix without a header, or a
+        column of one that another card has ended: entries would be missing.
     """
     if not line.startswith("DMIG*"):
-        return line[8:16].strip()
+        name = line[8:16].strip()
+        if not name or line[16:24].strip() != "0":
+            raise StudyError(
+                f"{where}: no header of a matrix, which is DMIG, a name and 0 in fields of 8 columns, nor a column, "
+                "which is DMIG*; punch the file anew"
+            )
+        return name
     name = line[8:24].strip()
     if name not in open_to:
         raise StudyError(

@@ -118,7 +118,7 @@ def read_table(path: Path, order: int) -> NodeTable:
     Raises
     ------
     StudyError
-        If a column is missing, a value is no number, or a row lies beyond the matrices.
+        If a column is missing or unknown, a value is no number, or a row lies beyond the matrices.
     """
     values, names = _columns_of(path)
     rows = values["row"].to_numpy()
@@ -172,7 +172,7 @@ def read_places(path: Path) -> Nodes:
     Raises
     ------
     StudyError
-        If a column is missing, or a value is no number.
+        If a column is missing or unknown, or a value is no number.
     """
     if not path.is_file():
         raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
@@ -227,6 +227,16 @@ def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFr
     if missing := [c for c in columns if c not in table.columns]:
         raise StudyError(
             f"{path}: no column {', '.join(missing)}; the table needs {', '.join(columns)}, separated by commas"
+        )
+    known = (*COLUMNS, SETS)
+    again = table.columns.duplicated().tolist()
+    if strange := [
+        str(c)
+        for c, twice in zip(table.columns, again, strict=True)
+        if twice or (c not in known and not table[c].isna().to_numpy().all())
+    ]:
+        raise StudyError(
+            f"{path}: column {strange[0]!r} is none of {', '.join(known)}, or stands twice; rename it or take it out"
         )
     try:
         names = (
