@@ -9,14 +9,15 @@ from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
+from updating.test_data.chain import roving
 from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
 
 FREQUENCY_WEIGHT = 0.5
 """How much a frequency ratio of e counts against a MAC of zero."""
 
 UNSEEN = 1e-6
-"""Constants of a predicted mode, over the largest ones, under which no test sees it [-]: rounding leaves 1e-12 of a
-mode that does not move along any direction hit or measured, 1e-7 where an iterative solver found it."""
+"""Motion of a predicted mode where the test roves, over that of the others, under which no test sees it [-]: rounding
+leaves 1e-12 of a mode that does not move along any direction there, 1e-7 where an iterative solver found it."""
 
 
 def mac_of_constants(
@@ -24,8 +25,8 @@ def mac_of_constants(
 ) -> FloatArray:
     """Return the MAC between measured and predicted modal constants, (n_measured, n_predicted) [-].
 
-    A predicted mode that does not move at the points of the test, one across their directions, is like none: what is
-    left of its constants is rounding, and of any shape.
+    A predicted mode that does not move where the test roves, one across the directions there, is like none: what is
+    left of it is rounding, and of any shape. One with a node at the fixed end keeps its shape.
 
     Parameters
     ----------
@@ -36,9 +37,9 @@ def mac_of_constants(
     """
     rows = slice(None) if trusted is None else trusted
     a, b = measured.constants[rows], prediction.constants[rows]
-    size = np.sum(b**2, axis=0)
-    unseen = size < UNSEEN**2 * np.max(size, initial=0.0, where=np.isfinite(size))
-    power = np.maximum(np.outer(np.sum(a**2, axis=0), size), 1e-300)
+    moves = np.sum(getattr(prediction, roving(measured))[rows] ** 2, axis=0)
+    unseen = moves < UNSEEN**2 * np.max(moves, initial=0.0, where=np.isfinite(moves))
+    power = np.maximum(np.outer(np.sum(a**2, axis=0), np.sum(b**2, axis=0)), 1e-300)
     return np.where(unseen, 0.0, (a.T @ b) ** 2 / power)
 
 
