@@ -102,6 +102,14 @@ def test_room_for_more_entries_in_a_mat_is_no_entry(tmp_path: Path) -> None:
     np.testing.assert_allclose(read_matrix(tmp_path / "k.mat").toarray(), K.toarray(), rtol=1e-12)
 
 
+def standing_twice() -> bytes:
+    """Return a sparse matrix of MATLAB whose first column has its first row twice."""
+    plain = io.BytesIO()
+    savemat(plain, {"K": sparse.csc_array(np.array([[2.0, 1.0], [1.0, 2.0]]))})
+    rows = [np.array(each, dtype="<i4").tobytes() for each in ([0, 1, 0, 1], [0, 0, 0, 1])]
+    return plain.getvalue().replace(rows[0], rows[1], 1)
+
+
 def matlab(**values: object) -> bytes:
     plain = io.BytesIO()
     savemat(plain, values, do_compression=True)
@@ -122,6 +130,7 @@ BROKEN = [
     ("k.mat", matlab(K=np.eye(3))[:-20], "not a whole .mat"),
     ("k.mat", b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512), "version 7.3"),
     ("k.mat", matlab(K=np.eye(3), M=np.eye(3)), "holds 2 matrices"),
+    ("k.mat", standing_twice(), "an entry that stands twice"),
     ("k.mat", matlab(order=3), "holds 0 matrices"),
     ("k.mat", matlab(K=np.eye(3) * 1j), "complex"),
     ("k.mat", matlab(K=np.zeros((2000, 2000))), "unpack to more than"),

@@ -130,11 +130,20 @@ def _variable(body: bytes, order: str, path: Path) -> _Variable | None:
         entries = _real(_numbers(parts[2], order)[: int(pointers[-1])], path)
         check_order(max(shape), len(entries), path)
         arrays = {"indices": indices[: len(entries)], "indptr": pointers}
-        return _Variable(called, Sparse(compressed(arrays, entries, (rows, columns), by_row=False).tocsr()))
+        found = compressed(arrays, entries, (rows, columns), by_row=False)
+        if _twice(found):
+            raise ValueError("an entry that stands twice")
+        return _Variable(called, Sparse(found.tocsr()))
     values = _real(_numbers(parts[0], order), path)
     if len(values) != prod(shape):
         raise ValueError(f"{len(values)} values in a matrix of {rows} x {columns}")
     return _Variable(called, Sparse(sparse.coo_array(values.reshape(shape, order="F")).tocsr()))
+
+
+def _twice(matrix: sparse.coo_array) -> bool:
+    """Tell whether an entry stands twice, as none does in a file of MATLAB: a sum would be a wrong number."""
+    place = np.asarray(matrix.row, dtype=np.int64) * matrix.shape[1] + matrix.col
+    return len(np.unique(place)) < len(place)
 
 
 def _numbers(element: _Element, order: str) -> AnyArray:
