@@ -120,14 +120,18 @@ def with_tails(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
 
 
 def _rest(number: tuple[int, int], wave: FloatArray) -> _Rest | None:
-    """Return what is left of the ringing of a force; None where the force goes on to the end of its record."""
+    """Return what is left of the ringing of a force; None where the force goes on, or does not ring."""
     moves = np.flatnonzero(np.diff(wave))
     if not np.isfinite(wave).all() or not len(moves):
         return None
     cut, last = int(moves[-1]) + 1, pulse_ends(np.abs(wave))[1]
     if wave[-1] != 0 or not 4 < cut - last <= LONGEST or len(wave) - cut < len(wave) // 2:
         return None
-    return _Rest(number, cut, wave[last + 1 : cut])
+    rest = wave[last + 1 : cut]
+    # what rings goes up and down; the end of a long pulse does not, and is whole
+    if abs(rest.sum()) > 0.5 * np.abs(rest).sum():
+        return None
+    return _Rest(number, cut, rest)
 
 
 def _fit(rests: list[_Rest]) -> _Fit | None:

@@ -78,7 +78,7 @@ def test_a_force_that_nothing_cuts_stays_as_it_is() -> None:
     assert with_tails(test) == (test, ())
 
 
-def test_a_cut_behind_all_ringing_changes_next_to_nothing_and_is_not_told() -> None:
+def test_a_cut_behind_all_ringing_changes_next_to_nothing_without_a_warning() -> None:
     smooth = replace(PLAN, anti_alias="smooth")
     shut = cut(whole(smooth))
     found, said = with_tails(shut)
@@ -90,3 +90,17 @@ def test_forces_are_continued_before_they_are_averaged() -> None:
     found, said = pulses_alone(cut(whole()))
     assert any("cuts the force off" in one for one in said)
     assert all(np.any(p.force[:, -1] != 0) or np.any(p.force[:, 100] != 0) for p in found.points)
+
+
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize("width", [5, 60, 150, 400])
+def test_a_pulse_that_is_zero_behind_its_end_is_whole(width: int, power: int) -> None:
+    """As simulated hits are: nothing rings, and what goes down to zero goes on nowhere."""
+    hit = whole()
+    force = np.zeros(hit.samples)
+    force[100 : 101 + width] = 50.0 * np.sin(np.pi * np.arange(width + 1) / width) ** power
+    force[np.abs(force) < 1e-12] = 0.0
+    test = replace(
+        hit, points=tuple(replace(p, force=np.outer([1.0, 1.2, 0.8, 1.1, 0.9], force)) for p in hit.points)
+    )
+    assert with_tails(test) == (test, ())
