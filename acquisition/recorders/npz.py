@@ -68,6 +68,7 @@ def _members(path: Path) -> Mapping[str, bytes]:
             if len({info.filename for info in infos}) < len(infos):
                 raise ValueError("two arrays of one name")
             return {info.filename.removesuffix(".npy"): archive.read(info) for info in infos}
+    # zipfile raises NotImplementedError for ways of packing that it does not know, RuntimeError for a password
     except (ValueError, KeyError, OSError, EOFError, NotImplementedError, RuntimeError, zlib.error,
             zipfile.BadZipFile) as error:  # fmt: skip
         statement = " ".join(str(error).split())[:200]

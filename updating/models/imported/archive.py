@@ -42,6 +42,7 @@ def read_archive(path: Path) -> Sparse:
             return _plain({path.stem: _array(path.read_bytes())}, path)
         arrays = _members(path)
         return _sparse(arrays, path) if "format" in arrays else _plain(arrays, path)
+    # zipfile raises NotImplementedError for ways of packing that it does not know, RuntimeError for a password
     except (ValueError, KeyError, OSError, EOFError, NotImplementedError, RuntimeError, zlib.error,
             zipfile.BadZipFile) as error:  # fmt: skip
         statement = " ".join(str(error).split())
