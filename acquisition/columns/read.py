@@ -252,7 +252,21 @@ def _points(records: Sequence[_Record], layout: Layout) -> tuple[Hits, ...]:
         )
     keys = dict.fromkeys((r.reference, r.responses) for r in records)
     groups = {key: [r for r in records if (r.reference, r.responses) == key] for key in keys}
+    for rs in groups.values():
+        _check_once(rs)
     return tuple(
         Hits(reference, responses, np.stack([r.force for r in rs]), np.stack([r.motion for r in rs]))
         for (reference, responses), rs in groups.items()
     )
+
+
+def _check_once(records: Sequence[_Record]) -> None:
+    """Check that no record of a point stands twice: noise makes any two hits differ."""
+    seen: dict[bytes, _Record] = {}
+    for record in records:
+        first = seen.setdefault(record.force.tobytes() + record.motion.tobytes(), record)
+        if first is not record:
+            raise InputError(
+                f"{record.where}: the same numbers, sample by sample, as {first.where}; one hit counted twice makes "
+                "noise look smaller: leave one out"
+            )

@@ -24,7 +24,7 @@ def rows(*columns: np.ndarray | list[str]) -> str:
     return "".join("\t".join(map(str, row)) + "\n" for row in zip(*columns, strict=True))
 
 
-def segment(*, notes: str = "", extra: int = 0, blank: str = "\n", columns: str = "One") -> str:
+def segment(*, notes: str = "", extra: int = 0, blank: str = "\n", harder: float = 1.0) -> str:
     """Return a segment with hammer and accelerometer, and channels that were not recorded."""
     none = "\t0" * extra
     header = (
@@ -33,7 +33,7 @@ def segment(*, notes: str = "", extra: int = 0, blank: str = "\n", columns: str 
     )
     names = "X_Value\tHammer\tAcc" + "".join(f"\tUntitled {k}" for k in range(extra)) + "\tComment\n"
     time = [f"{0.001 * k:.3f}" for k in range(4)]
-    return notes + header + names + rows(time, FORCE, MOTION, *[[""] * 4] * extra) + blank
+    return notes + header + names + rows(time, harder * FORCE, MOTION, *[[""] * 4] * extra) + blank
 
 
 def multi() -> str:
@@ -68,7 +68,7 @@ def test_labview_files_as_they_are_written(tmp_path: Path, name: str) -> None:
 
 def test_a_second_segment_may_have_notes(tmp_path: Path) -> None:
     (tmp_path / "a.lvm").write_text(
-        HEAD.format("One") + "\n" + segment() + segment(notes="Notes\tharder\n", blank="")
+        HEAD.format("One") + "\n" + segment() + segment(notes="Notes\tharder\n", blank="", harder=2.0)
     )
     assert read_columns(tmp_path / "a.lvm", LAYOUT).points[0].count == 2
 

@@ -89,11 +89,12 @@ def test_remarks_units_line_and_blank_separated_numbers(tmp_path, records):
 def test_blocks_and_files_are_hits_and_the_hammer_may_rove(tmp_path, records):
     two = tmp_path / "point_4.csv"
     one = written(tmp_path / "point_3.csv", records).read_text()
-    two.write_text(one + "\n" + one.split("\n", 1)[1] + "\n\n" + one, encoding="utf-8")
+    second, third = (written(tmp_path / "hit.csv", scale * records).read_text() for scale in (2, 3))
+    two.write_text(one + "\n" + second.split("\n", 1)[1] + "\n\n" + third, encoding="utf-8")
     text = LAYOUT + '[[file]]\nmatch = "point_4*"\nnode = 4\ndirection = "+y"\n'
     test = read_columns([tmp_path / "point_3.csv", two], layout_file(tmp_path, text))
     assert [(p.reference, p.count) for p in test.points] == [(Dof(3, -3), 1), (Dof(4, 2), 3)]
-    np.testing.assert_array_equal(test.points[1].force[2], test.points[0].force[0])
+    np.testing.assert_allclose(test.points[1].force, [k * test.points[0].force[0] for k in (1, 2, 3)])
     misspelt = layout_file(tmp_path, text.replace("point_4*", "pt_4*"))
     with pytest.raises(InputError, match=r"point_3\.csv: no \[\[file\]\] rule .*'pt_4\*' matches no file"):
         read_columns([tmp_path / "point_3.csv", two], misspelt)
@@ -328,3 +329,16 @@ def test_a_damaged_lvm_file_is_refused(tmp_path, text, words):
     columns = [{"name": "force", "quantity": "force"}, {"name": "acc", "quantity": "acceleration"}]
     with pytest.raises(InputError, match=words):
         read_columns(tmp_path / "a.lvm", layout_from({"column": columns}))
+
+
+def test_a_record_that_stands_twice_is_named(tmp_path, records):
+    """Two hits never agree in every sample; at another point the same numbers may be those of a symmetric model."""
+    one = written(tmp_path / "P3_1.csv", records)
+    copy = written(tmp_path / "P3_2.csv", records)
+    text = LAYOUT.replace("node = 3\n", "", 1) + '[[file]]\nmatch = "P{node}_*"\n'
+    with pytest.raises(
+        InputError, match=r"P3_2\.csv, line 2: the same numbers.* as .*P3_1\.csv, line 2.*leave one"
+    ):
+        read_columns([one, copy], layout_file(tmp_path, text))
+    other = written(tmp_path / "P4_1.csv", records)
+    assert len(read_columns([one, other], layout_file(tmp_path, text)).points) == 2

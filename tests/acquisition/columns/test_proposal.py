@@ -50,7 +50,9 @@ def test_hits_as_text_are_read_by_the_layout_that_is_written(
     factors = [how.pop(key, 1.0) for key in ("time", "force", "motion")]
     columns = [f * c for f, c in zip(factors, (TIME, FORCE, MOTION), strict=True)]
     paths = [
-        table(tmp_path / f"P{node}_{hit}.csv", heading, *columns, **how) for node in (3, 12) for hit in (1, 2)
+        table(tmp_path / f"P{node}_{hit}.csv", heading, columns[0], *(hit * c for c in columns[1:]), **how)
+        for node in (3, 12)
+        for hit in (1, 2)
     ]
     (test,) = read_test(paths, layout=proposed(paths))
     assert isinstance(test, HammerTest) and test.rate == pytest.approx(RATE, rel=1e-6)
@@ -93,12 +95,14 @@ def test_recorders_files(tmp_path: Path) -> None:
                 ChannelObject("hit", "Acc 2 +x", MOTION, {**step, "unit_string": "g"}),
             ]
         )
-    np.savez(tmp_path / "P7.npz", fs=RATE, force=np.stack([FORCE] * 2), acc=np.stack([MOTION] * 2))
+    np.savez(
+        tmp_path / "P7.npz", fs=RATE, force=np.stack([FORCE, 2 * FORCE]), acc=np.stack([MOTION, 2 * MOTION])
+    )
     (one,) = read_test(tmp_path / "P7.tdms", layout=proposed([tmp_path / "P7.tdms"]))
     (two,) = read_test(tmp_path / "P7.npz", layout=proposed([tmp_path / "P7.npz"]))
     assert one.rate == pytest.approx(RATE) and two.rate == RATE and two.points[0].count == 2
     assert (one.points[0].reference, one.points[0].responses) == (Dof(7, 3), (Dof(2, 1),))
-    np.testing.assert_array_equal(two.points[0].force[1], FORCE)
+    np.testing.assert_array_equal(two.points[0].force[1], 2 * FORCE)
 
 
 def test_a_wav_file_lacks_its_full_scale_and_says_so(tmp_path: Path) -> None:
