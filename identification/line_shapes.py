@@ -31,6 +31,10 @@ BROAD = 100.0
 """Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without
 effect."""
 
+ASKED = 96
+"""FRFs, evenly spread over those of a test, which are asked whether a line shape is worth a fit of all: where one is
+carried, all carry it. Doubled: more work, the same line shapes [-]."""
+
 
 def fit_shaped(
     frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], course: FloatArray | None = None
@@ -78,6 +82,7 @@ def _worth_a_fit(frfs: FrfSet, start: ComplexArray) -> list[Kind]:
     if frfs.window == "hann":
         return list(KINDS)
     few = _merged(start, frfs.df)
+    frfs = frfs.select(list(range(0, len(frfs.values), -(-len(frfs.values) // ASKED))))
     plain, shaped = _of_few(frfs, few), np.array([_of_few(_with(frfs, kind), few) for kind in KINDS])
     best = {
         int(k) for k, better in zip(shaped.argmin(axis=0), shaped.min(axis=0) < plain, strict=True) if better

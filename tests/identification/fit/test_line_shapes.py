@@ -10,7 +10,7 @@ import pytest
 from acquisition import Dof, FrfSet
 from acquisition.form import FORMS
 from acquisition.frfs.line_shape import LineShape
-from identification import identify
+from identification import identify, line_shapes
 from identification.fit.course import course_of
 from identification.fit.equations.basis import Axis
 from identification.fit.equations.residues import Residues, synthesise
@@ -158,6 +158,22 @@ def test_coarse_lines_without_a_window():
     check(model, 0.03, off=0.1)
     assert model.frfs.line_shape is None
     assert not any("drift" in w or "differ" in w for w in model.warnings)
+
+
+def test_of_many_frfs_some_are_asked_and_all_get_the_shape(monkeypatch):
+    """240 FRFs of smoothed lines: no more than 96 are fitted for the question, and the answer holds for all."""
+    asked, of_few = [], line_shapes._of_few
+    monkeypatch.setattr(line_shapes, "_of_few", lambda f, p: asked.append(len(f.values)) or of_few(f, p))
+    poles, residues = structure(0.03)
+    residues = residues * np.random.default_rng(5).uniform(0.5, 1.5, (40, 1, 6))
+    frequency = np.arange(5.0, 156.0, 5.0)
+    s = 2j * np.pi * np.concatenate([[1e-3], frequency, [160.0]])
+    exact = response(poles, residues.reshape(-1, 6), s)
+    smooth = 0.25 * exact[:, :-2] + 0.5 * exact[:, 1:-1] + 0.25 * exact[:, 2:]
+    model = identify(frf_set(frequency, noisy(smooth, 0.002, np.random.default_rng(0))))
+    check(model, 0.03, off=0.1)
+    assert asked == [80] * 3
+    assert model.frfs.line_shape is not None and len(model.frfs.values) == 240
 
 
 def test_two_close_modes_are_no_window():
