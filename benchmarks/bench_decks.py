@@ -50,9 +50,10 @@ def spent() -> float:
 def measure(n: int) -> dict[str, float]:
     """Read a block of one size and reduce it; return what each step takes [s], and the most memory [GB]."""
     from updating.models import Material, Spec, build_structure
+    from updating.models.decks import imported as made_of
     from updating.models.decks import read_deck_model
+    from updating.models.parts import Region
     from updating.models.reduced import reduce_structure
-    from updating.models.spec import Region
     from updating.models.state import State
 
     found: dict[str, float] = {}
@@ -71,7 +72,7 @@ def measure(n: int) -> dict[str, float]:
         model = read_deck_model(path)
         found["dofs"] = len(model.base.node)
         step("whole")
-        imported = model.imported
+        imported = made_of(model)
         step("parts")
     regions = tuple(Region(r.name, (0.0, 1.0)) for r in model.division.regions)
     structure = build_structure(

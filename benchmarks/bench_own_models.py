@@ -41,6 +41,7 @@ from updating import (
     measured_from_modes,
 )
 from updating.models import Damping, Region
+from updating.models.decks import imported as made_of
 from updating.models.decks import read_deck_model
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
@@ -210,7 +211,7 @@ def solid(rng: np.random.Generator, *, level: bool) -> Specimen:
         path = Path(folder) / "bracket.inp"
         path.write_text("\n".join(deck) + "\n", encoding="ascii")
         model = read_deck_model(path, [(name, name) for name in regions], units="mm-t-s")
-        imported = model.imported
+        imported = made_of(model)
         parts = imported.stiffness_parts, imported.mass_parts
     order = [own.name for own in model.division.regions]
     logs = factors(rng, order, level=level)

@@ -9,14 +9,10 @@ if TYPE_CHECKING:
     from identification.band.informed import at_cut_edge, informed_band
     from identification.fit.equations.residues import Residues, fit_residues
     from identification.identify import Prepared, identify, prepare
+    from identification.level_dependence import LevelDependence
     from identification.levels.one_level import at_one_level, is_smeared, with_line_doubt
     from identification.levels.products import Growth, growth
-    from identification.levels.slopes import (
-        LevelDependence,
-        follows_level,
-        level_dependence,
-        why_no_level_dependence,
-    )
+    from identification.levels.slopes import follows_level, level_dependence, why_no_level_dependence
     from identification.levels.stretched import Stretched, stretched_averages
     from identification.levels.sums import coincidences, combination
     from identification.mac import (
@@ -123,7 +119,8 @@ load_on_demand(
         ".levels.products": "Growth growth",
         ".levels.sums": "coincidences combination",
         ".levels.stretched": "Stretched stretched_averages",
-        ".levels.slopes": "LevelDependence follows_level level_dependence why_no_level_dependence",
+        ".level_dependence": "LevelDependence",
+        ".levels.slopes": "follows_level level_dependence why_no_level_dependence",
         ".mac": (
             "auto_mac comac common_dofs coordinate_table ecomac fdac frac frac_table mac mac_table macx modes_table "
             "mpc msf subspace_mac"

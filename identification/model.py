@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -17,11 +16,9 @@ from identification.arrangement import signs
 from identification.fit.equations import basis
 from identification.fit.equations.residues import Residues, synthesise
 from identification.hit_errors import HitErrors
+from identification.level_dependence import LevelDependence
 from identification.poles.stabilisation import StabilisationChart
 from identification.trend import Trend
-
-if TYPE_CHECKING:
-    from identification.levels.slopes import LevelDependence
 
 
 @dataclass(frozen=True, eq=False)

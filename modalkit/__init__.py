@@ -30,6 +30,7 @@ _check_rooms()
 
 from acquisition.display import draw_by  # noqa: E402
 from acquisition.lazy import load_on_demand  # noqa: E402
+from modalkit.version import __version__  # noqa: E402
 
 draw_by("modalkit.notebook")
 
@@ -70,7 +71,6 @@ if TYPE_CHECKING:
     from updating import Case, Diagnosis, diagnose, register
     from updating.correlation.correlate import correlate
 
-__version__ = "0.2.1"
 
 __all__ = [
     "Case",
@@ -88,6 +88,7 @@ __all__ = [
     "Session",
     "Study",
     "StudyError",
+    "__version__",
     "bootstrap_frfs",
     "cmif",
     "compare",

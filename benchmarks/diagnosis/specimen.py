@@ -9,7 +9,8 @@ import numpy as np
 from diagnosis.body import Body
 from diagnosis.mesh import Floats
 from updating import Environment, Material, Spec, Tolerances
-from updating.models.spec import Damping, PointMass
+from updating.models.parts import PointMass
+from updating.models.spec import Damping
 
 MATERIALS = (
     (70e9, 2700.0, 0.33),

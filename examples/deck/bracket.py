@@ -22,6 +22,7 @@ from acquisition import Dof, Geometry, hammer_test, write_uff
 from acquisition.arrays import FloatArray
 from acquisition.synthetic import HammerPlan, modal_system
 from updating.models import Material, Spec, build_structure
+from updating.models.decks import imported as made_of
 from updating.models.decks import read_deck_model
 
 LENGTH, WIDTH, HEIGHT, SHEET = 100.0, 60.0, 80.0, 8.0
@@ -82,7 +83,7 @@ def deck(finer: int = 0, *, face: float = SIDES[1], kind: str = "C3D20R") -> str
 
 def modes_of(path: Path, count: int) -> tuple[FloatArray, FloatArray]:
     """Return frequencies [Hz] and mass-normalised shapes at the test's points of a deck."""
-    imported = read_deck_model(path, units="mm-t-s").undivided
+    imported = made_of(read_deck_model(path, units="mm-t-s"), divided=False)
     size = imported.extents[1] - imported.extents[0]
     spec = Spec("matrices", *size.tolist(), (), (), "imported", Material(1.0, 1.0), imported=imported)
     structure = build_structure(spec)

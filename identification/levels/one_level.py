@@ -20,10 +20,10 @@ from acquisition.hits.hammer import Hits
 from identification.fit.equations import basis
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.residues import Residues, fit_residues, synthesise
+from identification.level_dependence import LevelDependence
 from identification.levels.hits import Judged, UsedHits, used_hits
 from identification.levels.slopes import (
     SURE,
-    LevelDependence,
     band_of,
     follows_level,
     is_known,

@@ -16,9 +16,10 @@ from scipy import stats
 
 from acquisition import Windows
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from identification.level_dependence import LevelDependence
 from identification.levels.hits import Judged, used_hits, why_not
 from identification.levels.one_level import hit_poles, hit_residues, hit_shifts
-from identification.levels.slopes import LevelDependence, band_of, is_known, of_single, rows_of, weights_of
+from identification.levels.slopes import band_of, is_known, of_single, rows_of, weights_of
 from identification.model import ModalModel
 
 HALF = 0.5

@@ -10,14 +10,13 @@ modes agree on how hard a hit was better than its record tells, that level takes
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy import stats
 
 from acquisition import Windows
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations.iteration import decaying
@@ -26,6 +25,7 @@ from identification.fit.equations.projection import Step
 from identification.fit.equations.refine import evaluate, fit_at
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights
+from identification.level_dependence import LevelDependence
 from identification.levels.effective import effective_levels
 from identification.levels.hits import Judged, UsedHits, mean_level, used_hits, why_not
 from identification.model import ModalModel
@@ -44,54 +44,6 @@ AT_REST = 0.03
 SURE = 4.0
 """Slope over its standard deviation from which a mode follows the level. Doubled, weak joints go unnamed; halved, every
 other test of thirty modes names one by chance [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class LevelDependence(Displayed):
-    """How frequencies and damping follow the force of the hits.
-
-    The level of a hit is the largest force in its record: what a user reads off his analyser, and, with one hammer
-    and one tip, what every amplitude that follows is proportional to.
-
-    Parameters
-    ----------
-    slope, slope_sigma : (n_modes,) arrays
-        d ln f / dF of each mode at ``level`` and its standard deviation; nan where no hit shows the mode [1/N].
-    damping_slope, damping_slope_sigma : (n_modes,) arrays
-        d zeta / dF, likewise [1/N].
-    level : float
-        The level that the averaged FRFs, and so the identified frequencies, stand for [N].
-    weakest, strongest : float
-        Range of the recorded levels [N].
-    levels : (n_hits,) array
-        Level of each used hit: by its record, and by the modes that follow it where these are two or more [N].
-    point : (n_hits,) int array
-        Which point and run each hit belongs to.
-    shifts, sigmas : (n_hits, n_modes) arrays
-        ln f of each hit less that identified, and the standard deviation by the misfit of this hit alone [-].
-    damping_shifts : (n_hits, n_modes) array
-        Damping ratio of each hit less that identified [-].
-    """
-
-    slope: FloatArray
-    slope_sigma: FloatArray
-    damping_slope: FloatArray
-    damping_slope_sigma: FloatArray
-    level: float
-    weakest: float
-    strongest: float
-    levels: FloatArray
-    point: IntArray
-    shifts: FloatArray
-    sigmas: FloatArray
-    damping_shifts: FloatArray
-
-    def modes(self, which: IntArray) -> LevelDependence:
-        """Return the same of some of the modes, by their numbers ``which``, (n,)."""
-        each = ("slope", "slope_sigma", "damping_slope", "damping_slope_sigma")
-        changed = {name: getattr(self, name)[which] for name in each}
-        changed |= {name: getattr(self, name)[:, which] for name in ("shifts", "sigmas", "damping_shifts")}
-        return replace(self, **changed)
 
 
 def why_no_level_dependence(tests: Sequence[Judged]) -> str | None:

@@ -14,8 +14,8 @@ from typing import Any
 
 from acquisition.display import Displayed
 from acquisition.errors import EstimationError, InputError
-from modalkit import __version__
 from modalkit.batch.find import Found
+from modalkit.version import __version__
 from modalkit.workers.client import CommandFailedError
 from modalkit.workers.journal import Journal, is_store, read_journal
 from modalkit.workers.pool import RunCommand, in_flight, warm_pool

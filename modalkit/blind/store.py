@@ -13,10 +13,10 @@ from types import TracebackType
 from typing import Any, Self
 
 from acquisition.errors import InputError, ModalkitError
-from modalkit import __version__
 from modalkit.blind.outcome import Outcome
 from modalkit.blind.seal import SALT_BYTES, open_seal
 from modalkit.simulator.drawing.ranges import DrawRanges
+from modalkit.version import __version__
 from modalkit.workers.journal import Journal, read_journal
 
 SCHEMA = "modalkit.blindrun/2"

@@ -30,7 +30,7 @@ _BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", 
 
 def _version(asked: bool) -> None:
     if asked:
-        from modalkit import __version__
+        from modalkit.version import __version__
 
         sys.stdout.write(f"modalkit {__version__}\n")
         raise typer.Exit

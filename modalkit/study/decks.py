@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from acquisition.errors import StudyError
 from modalkit.study.matrices import FACTORS_ALONE, FOREIGN, sides_of, spec_of
 from updating.models import Damping, Material, Region, Spec
-from updating.models.decks import DeckModel, read_deck_model
+from updating.models.decks import DeckModel, imported, read_deck_model
 from updating.models.imported import SI, UNITS
 
 if TYPE_CHECKING:
@@ -71,17 +71,17 @@ def deck_spec(model: ModelTable, deck: DeckModel, damping: Damping) -> Spec:
     StudyError
         If CalculiX does not solve it.
     """
-    stated = {table.name: table for table in model.region}
+    stated, made_of = {table.name: table for table in model.region}, imported(deck)
     regions = []
     for number, own in enumerate(deck.division.regions):
-        box = deck.imported.box(number)
-        x, y = sides_of(deck.imported, deck.imported.extents if box is None else box)
+        box = made_of.box(number)
+        x, y = sides_of(made_of, made_of.extents if box is None else box)
         table = stated.get(own.name)
         damps = {} if table is None else table.model_dump(include={"alpha", "beta", "loss_factor"})
         made = _material(deck, own.materials)
         regions.append(Region(own.name, x, y, made.E, made.density, **damps))
     names = dict.fromkeys(name for own in deck.division.regions for name in own.materials)
-    return spec_of(model, deck.imported, _material(deck, tuple(names)), tuple(regions), damping)
+    return spec_of(model, made_of, _material(deck, tuple(names)), tuple(regions), damping)
 
 
 def known_values(deck: DeckModel) -> dict[str, float]:

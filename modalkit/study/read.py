@@ -110,7 +110,7 @@ class Study(Strict):
 
     def _spec(self) -> Spec:
         from updating.models import Material, PointMass, Region, Spec
-        from updating.models.spec_checks import check_places
+        from updating.models.places import check_places
 
         model = self.model
         if model is None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from acquisition.errors import EstimationError, InputError
-from modalkit import __version__
+from modalkit.version import __version__
 from modalkit.workers.client import COMMAND
 from modalkit.workers.pool import warm_pool
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, Literal, NoReturn
 
-from modalkit import __version__
+from modalkit.version import __version__
 
 Program = Callable[[], None]
 """What is served: it takes its words from ``sys.argv`` and ends as programs do, or returns."""

@@ -11,7 +11,8 @@ from updating.effects.base import Effect
 from updating.effects.limits import PLACES
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
-from updating.models.spec import Kind, Material, Region, Spec
+from updating.models.parts import Region
+from updating.models.spec import Kind, Material, Spec
 from updating.prediction.predict import Predictor
 from updating.test_data.measured import Measured
 

@@ -2,7 +2,8 @@
 
 from updating.models.base import Structure, Term
 from updating.models.build import build_structure
-from updating.models.spec import Damping, Material, PointMass, Region, Spec
+from updating.models.parts import PointMass, Region
+from updating.models.spec import Damping, Material, Spec
 from updating.models.structure import FieldStructure
 
 __all__ = [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
-from updating.models.spec_checks import check_parts
+from updating.models.parts import PointMass, Region
 
 if TYPE_CHECKING:
     from updating.models.imported.hypothesis import Hypothesis
@@ -57,57 +57,6 @@ class Material:
     E: float
     density: float
     poisson: float = 0.3
-
-
-@dataclass(frozen=True)
-class Region:
-    """A macro-element: a stretch of the beam or a rectangle of the plate with properties of its own.
-
-    Parameters
-    ----------
-    name : str
-        Name used in parameters such as ``root.E``.
-    x, y : tuple of float
-        Lower and upper limit [m]; ``y`` is None for a beam or for the whole width.
-    E, density, thickness, area, inertia : float, optional
-        Own values, in place of the model's [Pa, kg/m^3, m, m^2, m^4]; area and inertia for beams only.
-    shear_coefficient : float, optional
-        Shear coefficient of the section, of beams; left out, that of a rectangle [-].
-    alpha, beta, loss_factor : float, optional
-        Own damping: C = alpha M + beta K [1/s, s], structural loss factor [-].
-    """
-
-    name: str
-    x: tuple[float, float]
-    y: tuple[float, float] | None = None
-    E: float | None = None
-    density: float | None = None
-    thickness: float | None = None
-    area: float | None = None
-    inertia: float | None = None
-    shear_coefficient: float | None = None
-    alpha: float | None = None
-    beta: float | None = None
-    loss_factor: float | None = None
-
-
-@dataclass(frozen=True)
-class PointMass:
-    """A mass the modeller knows of.
-
-    Parameters
-    ----------
-    at : tuple of float
-        Position (x,) or (x, y) [m].
-    mass : float
-        Mass [kg].
-    inertia : float
-        Rotary inertia about the in-plane axes [kg m^2].
-    """
-
-    at: tuple[float, ...]
-    mass: float
-    inertia: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -206,7 +155,10 @@ class Spec(Displayed):
                 f"model: elements = {list(self.elements)} are more than {MOST_ELEMENTS}; fewer are as exact and "
                 "fit the memory"
             )
-        check_parts(self)
+        for mass in self.masses:
+            mass.check(self.dim, self.called)
+        for region in self.regions:
+            region.check(self.kind)
         if not self.regions:
             object.__setattr__(self, "regions", _default_regions(self))
 

@@ -27,7 +27,8 @@ from updating.models.fields import (
     plate_fields,
     timoshenko_fields,
 )
-from updating.models.spec import Region, Spec
+from updating.models.parts import Region
+from updating.models.spec import Spec
 from updating.models.state import State
 from updating.models.terms import FieldTerm, beam_terms, plate_terms, product
 

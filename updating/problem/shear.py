@@ -12,7 +12,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.build import build_structure
-from updating.models.spec import Region, Spec
+from updating.models.parts import Region
+from updating.models.spec import Spec
 from updating.models.terms import shear_coefficient
 from updating.thresholds import SOFTER_IN_SHEAR
 

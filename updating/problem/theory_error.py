@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,14 +13,9 @@ from updating.models.build import build_structure
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.models.state import NOMINAL
-from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 from updating.problem.shear import slackening
 from updating.problem.width import stiffening
-from updating.thresholds import LEAST_CONSTANT_NOISE, LEAST_FREQUENCY_NOISE, THEORY_BEYOND_NOISE
-
-if TYPE_CHECKING:
-    from updating.problem.specimen import SpecimenProblem
 
 MANY_ELEMENTS = 500
 """Plates with more elements are compared with a coarser mesh and extrapolated, which costs less."""
@@ -134,29 +128,3 @@ def _theory(predictor: Predictor, base: FloatArray, vectors: FloatArray) -> Floa
     first = predictor.reduced.structure.rigid_modes
     partner = first + np.argmax(np.abs(vectors.T @ others[:, first : first + 2 * len(base) + 5]), axis=1)
     return np.asarray(np.log(np.sqrt(values[partner]) / base))
-
-
-def theory_shows(problem: SpecimenProblem) -> bool:
-    """Tell whether the fuller theory moves frequencies or shapes by more than a part of the noise.
-
-    Parameters
-    ----------
-    problem : SpecimenProblem
-        Test and model, whatever was put into the model beforehand included.
-    """
-    theory, test, here = problem.predictor.spec.fuller, problem.measured, problem.nominal
-    if theory is None:
-        return False
-    there = problem.predictor.under(theory).predict(at_least=problem.reach)
-    there = there.select(match(test, there, problem.order))
-    noise = np.hypot(test.frequency_sigma / test.frequency, max(test.repeatability, LEAST_FREQUENCY_NOISE))
-    if np.any(np.abs(np.log(there.frequency / here.frequency)) > THEORY_BEYOND_NOISE * noise):
-        return True
-    if not test.has_shapes:
-        return False
-    level = np.sum(there.constants * here.constants, axis=0) / np.sum(here.constants**2, axis=0)
-    moved = there.constants / level - here.constants
-    size = np.linalg.norm(test.constants, axis=0) / np.linalg.norm(here.constants, axis=0)
-    least = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(test.constants**2, axis=0))
-    share = np.sqrt(np.mean((moved * size) ** 2 / (test.constants_sigma**2 + least**2), axis=0))
-    return bool(np.any(share > THEORY_BEYOND_NOISE))

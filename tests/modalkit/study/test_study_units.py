@@ -13,7 +13,7 @@ from acquisition.si_units import si_value
 from modalkit.study.read import Study, read_study
 from updating import LIBRARY
 from updating.effects.specimens import example, unit_of
-from updating.models.spec import PointMass
+from updating.models.parts import PointMass
 
 WITH_UNITS = """
 [test]

@@ -21,6 +21,7 @@ from updating.models import Region
 from updating.models.base import Structure
 from updating.models.decks import cache as deck_cache
 from updating.models.decks import deck_matrices, parameter_matrices, program, read_deck_model
+from updating.models.decks import imported as made_of
 from updating.models.decks.cards import read_cards
 from updating.models.decks.model import DeckModel
 from updating.models.decks.states import deck_answers, deck_state
@@ -88,7 +89,7 @@ def largest_difference(one: Sparse, other: Sparse) -> float:
 def test_a_solid_is_what_ccx_finds_and_what_a_bar_does(bricks: Bricks, tmp_path: Path) -> None:
     """To 1e-6 of CalculiX's seven digits; along the bar, c / 4 L and three times that, on the nose."""
     lines = bar(bricks)
-    found = frequencies(read_deck_model(written(tmp_path, lines), units="mm-t-s").imported, 12)
+    found = frequencies(made_of(read_deck_model(written(tmp_path, lines), units="mm-t-s")), 12)
     assert found == pytest.approx(by_ccx(tmp_path, lines, 12), rel=1e-6)
     along = np.sqrt(210e9 / 7850) / (4 * 0.2)
     assert np.abs(found / along - 1).min() < 1e-4
@@ -98,7 +99,7 @@ def test_a_solid_is_what_ccx_finds_and_what_a_bar_does(bricks: Bricks, tmp_path:
 def test_a_slender_cantilever_bends_as_the_closed_form_says(bricks: Bricks, tmp_path: Path) -> None:
     """1 m by 20 x 10 mm: shear and rotary inertia take 1e-4 or less from the first mode each way."""
     found = frequencies(
-        read_deck_model(written(tmp_path, bar(bricks, length=1000.0, steps=40)), units="mm-t-s").imported, 2
+        made_of(read_deck_model(written(tmp_path, bar(bricks, length=1000.0, steps=40)), units="mm-t-s")), 2
     )
     for value, height in zip(found, (0.010, 0.020), strict=True):
         bending = 1.8751040687**2 / (2 * np.pi) * np.sqrt(210e9 * height**2 / 12 / 7850)
@@ -115,7 +116,7 @@ def test_parts_are_the_whole_and_each_of_its_own_elements(bricks: Bricks, tmp_pa
     assert [(r.name, len(r.elements), r.materials) for r in model.division.regions] == [
         ("waist", 8, ("ALU",)), ("ROOT", 16, ("STEEL",)), ("TIP", 16, ("STEEL",))
     ]  # fmt: skip
-    imported = model.imported
+    imported = made_of(model)
     assert (imported.rest["stiffness"], imported.rest["mass"]) == (None, None)
     low, high = imported.box(0) or (np.zeros(3), np.zeros(3))
     assert (low[0], high[0]) == pytest.approx((0.08, 0.12))
@@ -201,7 +202,7 @@ def test_a_longer_bar_is_a_node_set_moved(bricks: Bricks, tmp_path: Path) -> Non
     assert end is not None
     assert (end.low, end.high) == pytest.approx((-6e-3, 6e-3))
     stiffness, mass = model.matrices({end: 4e-3})
-    moved = Imported(stiffness, mass, model.undivided.nodes)
+    moved = Imported(stiffness, mass, made_of(model, divided=False).nodes)
     along = np.sqrt(210e9 / 7850) / (4 * 0.204)
     assert np.abs(frequencies(moved, 12) / along - 1).min() < 1e-4
     runs = [model.matrices({end: value}) for value in end.samples]
@@ -235,7 +236,7 @@ def structure_of(model: DeckModel) -> Structure:
     """Return the structure of a deck with its regions."""
     regions = tuple(Region(r.name, (0.0, 0.2)) for r in model.division.regions)
     return build_structure(
-        Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), regions, imported=model.imported)
+        Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), regions, imported=made_of(model))
     )
 
 
@@ -323,9 +324,9 @@ def test_what_was_made_is_kept_and_the_deck_stays(
     ran = []
     own = program.run
     monkeypatch.setattr(program, "run", lambda *stated: (ran.append(1), own(*stated))[1])
-    first = read_deck_model(path).imported
+    first = made_of(read_deck_model(path))
     assert len(ran) == 3
-    again = read_deck_model(path).imported
+    again = made_of(read_deck_model(path))
     assert len(ran) == 3
     assert abs(first.stiffness - again.stiffness).max() == 0
     assert path.read_bytes() == before
@@ -381,7 +382,7 @@ def test_a_file_may_hold_data_of_the_card_before_it(bricks: Bricks, tmp_path: Pa
     assert [(one.head, one.lines) for one in files.cards] == [(one.head, one.lines) for one in whole.cards]
     assert files.nodes.held == whole.nodes.held
     assert files.nodes.sets == whole.nodes.sets
-    found = frequencies(files.undivided, 6)
+    found = frequencies(made_of(files, divided=False), 6)
     assert found == pytest.approx(by_ccx(tmp_path, files.path.read_text().splitlines(), 6), rel=1e-6)
 
 
@@ -458,7 +459,7 @@ def test_without_ccx_the_error_says_how_to_get_it(
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(StudyError, match=r"needs the program ccx, and there is none; .*calculix-ccx"):
-        read_deck_model(written(tmp_path, bar(bricks))).imported  # noqa: B018
+        made_of(read_deck_model(written(tmp_path, bar(bricks))))
 
 
 @needs_ccx

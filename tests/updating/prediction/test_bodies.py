@@ -10,7 +10,7 @@ from updating_cases import BEAM, PLATE, POINTS, blank, exactly
 
 from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.diagnose import pose
-from updating.models.spec import PointMass
+from updating.models.parts import PointMass
 from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
 from updating.thresholds import STATED_MASS_DOUBT

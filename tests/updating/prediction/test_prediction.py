@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from updating_cases import BEAM, PLATE, POINTS, STEEL, ExactBeam, blank
 
 from updating import Damping, Predictor, Region, Spec
-from updating.models.spec import PointMass
+from updating.models.parts import PointMass
 from updating.models.state import NOMINAL, State
 
 FACTORS = ("E", "density", "thickness", "width", "length")

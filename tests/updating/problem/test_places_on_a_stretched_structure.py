@@ -9,7 +9,8 @@ import pytest
 from updating_cases import BEAM, POINTS, blank
 
 from updating import LIBRARY, Case, Predictor
-from updating.models.spec import PointMass, Spec
+from updating.models.parts import PointMass
+from updating.models.spec import Spec
 from updating.nominal import predictor_of
 from updating.problem.candidate import Candidate
 

@@ -11,7 +11,7 @@ from updating_cases import BEAM, DOUBTS, ExactBeam, blank, exactly
 from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
-from updating.models.spec import Region
+from updating.models.parts import Region
 from updating.models.terms import shear_coefficient
 from updating.problem.candidate import Candidate
 from updating.problem.shear import slackening

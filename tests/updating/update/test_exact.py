@@ -13,7 +13,7 @@ from effect_cases import CHANGES, LOOK, admitted, bound, form, full_modes
 
 from updating import LIBRARY, Parameter, Predictor
 from updating.effects.base import Effect, Values
-from updating.models.spec import Region
+from updating.models.parts import Region
 from updating.models.state import State
 from updating.update.parameters.exact import full_modes as exact_modes
 

@@ -15,6 +15,7 @@ from acquisition import ModalData
 from acquisition.errors import StudyError
 from updating import Axes, Case, Material, Spec, Tolerances, measured_from_modes
 from updating.models import Region
+from updating.models.decks import imported as made_of
 from updating.models.decks import read_deck_model
 from updating.update import Update, update
 
@@ -60,7 +61,7 @@ def by_ccx(folder: Path, lines: list[str], count: int) -> np.ndarray:
 def updated(folder: Path, deck: list[str], found: np.ndarray, *parameters: str) -> Update:
     """Update some numbers of a deck by frequencies known to 1e-4."""
     (folder / "angle.inp").write_text("\n".join(deck) + "\n")
-    imported = read_deck_model(folder / "angle.inp").imported
+    imported = made_of(read_deck_model(folder / "angle.inp"))
     regions = (Region("FOOT", (0.0, 0.05)), Region("WALL", (0.049, 0.051)))
     size = imported.extents[1] - imported.extents[0]
     steel = Material(210e9, 7850.0)

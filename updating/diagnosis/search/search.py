@@ -27,7 +27,7 @@ from updating.diagnosis.search.sets import pairs_of
 from updating.effects import Effect, Lack, Obstacle, Variant
 from updating.likelihood.outliers import Outlier
 from updating.problem.candidate import Candidate
-from updating.problem.theory_error import theory_shows
+from updating.problem.theory_shows import theory_shows
 from updating.thresholds import (
     COUNT_PRIOR,
     DOUBT_BEYOND_NOISE,

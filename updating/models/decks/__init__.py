@@ -1,5 +1,6 @@
 """Decks as models: CalculiX makes the matrices, of all, of each element set, and for other numbers in it."""
 
+from updating.models.decks.imported import imported
 from updating.models.decks.model import (
     KNOWN,
     DeckModel,
@@ -14,6 +15,7 @@ __all__ = [
     "DeckModel",
     "DeckParameter",
     "deck_matrices",
+    "imported",
     "parameter_matrices",
     "read_deck_model",
 ]

@@ -17,9 +17,8 @@ from updating.models.fields import Sparse
 from updating.models.imported.checks import symmetric
 from updating.models.imported.deck import Deck, read_deck
 from updating.models.imported.elements import Elements
-from updating.models.imported.matrices import Imported
 from updating.models.imported.nodes import NodeTable, deck_table
-from updating.models.imported.units import SI, matrix_in_si, places_in_si, units_of
+from updating.models.imported.units import SI, matrix_in_si, units_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +70,11 @@ class DeckModel:
         known = [(family, nodes) for family, nodes in members if family]
         return Elements({n: length * at for n, at in self.nodes.nodes.items()}, tuple(known))
 
+    @property
+    def whole(self) -> tuple[Sparse, Sparse]:
+        """Stiffness and mass of the deck as it is [SI]."""
+        return self._in_si(self.base)
+
     def part(self, region: int) -> tuple[Sparse, Sparse]:
         """Return stiffness and mass of a region alone [SI]."""
         return self._in_si(self._same_rows(self.division.part(region), self.division.regions[region].name))
@@ -116,7 +120,7 @@ class DeckModel:
     ) -> tuple[Sparse, Sparse]:
         """Return what other numbers add to stiffness and mass of the deck, or of a region alone [SI]."""
         stiffness, mass = self.matrices(values, region)
-        before = self._in_si(self.base) if region is None else self.part(region)
+        before = self.whole if region is None else self.part(region)
         return Sparse(stiffness - before[0]), Sparse(mass - before[1])
 
     def _same_rows(self, cards: Cards, what: str) -> Stored:
@@ -132,28 +136,6 @@ class DeckModel:
         return (
             matrix_in_si(symmetric(found.stiffness, f"{self.path}: stiffness"), self.table, self.units),
             matrix_in_si(symmetric(found.mass, f"{self.path}: mass"), self.table, self.units),
-        )
-
-    @cached_property
-    def imported(self) -> Imported:
-        """The deck as matrices with a part of each region."""
-        _ = self.base  # first: what is wrong with the deck is no fault of a part
-        parts = [self.part(i) for i in range(len(self.division.regions))]
-        return self._matrices(tuple(k for k, _ in parts), tuple(m for _, m in parts))
-
-    @cached_property
-    def undivided(self) -> Imported:
-        """The deck as matrices without parts."""
-        return self._matrices((), ())
-
-    def _matrices(self, stiffness: tuple[Sparse, ...], mass: tuple[Sparse, ...]) -> Imported:
-        return Imported(
-            *self._in_si(self.base),
-            places_in_si(self.table, self.units),
-            stiffness,
-            mass,
-            str(self.path),
-            self,
         )
 
 
@@ -207,7 +189,7 @@ def deck_matrices(path: Path, like: DeckModel) -> tuple[Sparse, Sparse]:
             f"{path}: its matrices have {len(other.base.node)} rows, those of {like.path} {len(like.base.node)}, or as "
             "many of other nodes; give a deck on the same mesh and supports"
         )
-    return other._in_si(other.base)
+    return other.whole
 
 
 def parameter_matrices(model: DeckModel, name: str, value: float) -> tuple[Sparse, Sparse]:

@@ -13,7 +13,8 @@ from updating.effects import LIBRARY, Effect
 from updating.models.damping import WHOLE
 from updating.models.decks import KNOWN, DeckParameter
 from updating.models.decks.states import deck_state
-from updating.models.spec import Region, Spec
+from updating.models.parts import Region
+from updating.models.spec import Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.tolerances import Tolerances

@@ -1,21 +1,13 @@
-"""What masses and regions of a model must be: no numbers that nothing has, and on the structure."""
+"""Whether the masses and regions of a model lie on it, and are of its size."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from acquisition.errors import StudyError
-
-if TYPE_CHECKING:
-    from updating.models.spec import PointMass, Region, Spec
-
-POSITIVE = ("E", "density", "thickness", "area", "inertia")
-"""A region's own properties that are above zero."""
-
-DAMPERS = ("alpha", "beta", "loss_factor")
-"""A region's own damping, which is not negative."""
+from updating.models.parts import POSITIVE
+from updating.models.spec import Spec
 
 ROUNDED = 1e-3
 """How far, relative to the size, a coordinate may miss an edge: digits that a user does not write out [-]."""
@@ -25,20 +17,6 @@ LARGEST = 1e6
 
 THOUSAND = 1000.0
 """Millimetres in a metre [-]."""
-
-
-def check_parts(spec: Spec) -> None:
-    """See that the masses and regions of a model can be.
-
-    Raises
-    ------
-    StudyError
-        If one has a number that nothing has, or the wrong count of coordinates.
-    """
-    for mass in spec.masses:
-        _check_mass(spec, mass)
-    for region in spec.regions:
-        _check_region(spec, region)
 
 
 def check_places(spec: Spec) -> None:
@@ -80,35 +58,6 @@ def _check_sizes(spec: Spec) -> None:
                 f"model: {whose}: {name} = {value:g} is {value / own:.2g} times that of the {spec.kind} itself; check "
                 "its unit"
             )
-
-
-def _check_mass(spec: Spec, mass: PointMass) -> None:
-    at = list(mass.at)
-    if len(at) != spec.dim:
-        many = "s" if spec.dim > 1 else ""
-        raise StudyError(
-            f"model: mass at {at} needs {spec.dim} coordinate{many} on {spec.called}, found {len(at)}"
-        )
-    if not (0 <= mass.mass < math.inf and 0 <= mass.inertia < math.inf):
-        raise StudyError(
-            f"model: mass at {at} of {mass.mass:g} kg, {mass.inertia:g} kg m2; neither is negative"
-        )
-
-
-def _check_region(spec: Spec, region: Region) -> None:
-    whose = f"region {region.name!r}"
-    for name in POSITIVE + DAMPERS:
-        value, least = getattr(region, name), "above zero" if name in POSITIVE else "not negative"
-        if value is not None and not (0 < value < math.inf or (value == 0 and name in DAMPERS)):
-            raise StudyError(f"model: {whose} has {name} = {value:g}; it is finite and {least}")
-    sides = {"x": region.x, "y": region.y or ()}
-    if spec.kind == "beam" and region.y is not None:
-        raise StudyError(f"model: {whose} has y; a beam reaches along x alone")
-    if spec.kind == "plate" and (region.area, region.inertia, region.shear_coefficient) != (None, None, None):
-        raise StudyError(f"model: {whose} has area or inertia; those are of beams")
-    for axis, ends in sides.items():
-        if ends and not ends[0] < ends[1]:
-            raise StudyError(f"model: {whose}: {axis} = {list(ends)} ends before it begins; give [low, high]")
 
 
 def _check_on(spec: Spec, what: str, sides: Mapping[str, tuple[float, ...]]) -> None:
