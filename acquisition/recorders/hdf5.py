@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +70,7 @@ def named_arrays(path: Path, names: Sequence[str]) -> Named:
                     )
                 _check_size(found, name, path)
                 _check_bits(found, name, path, h5py)
+                _check_chunks(found, name, path)
                 values[name] = np.asarray(found[()])
                 units[name] = next((unit for key in _UNITS if (unit := _text(found.attrs.get(key)))), "")
     except InputError:
@@ -122,6 +124,23 @@ def _check_bits(found: Any, name: str, path: Path, h5py: Any) -> None:
         f"{path}: {name!r} states a layout of bits that no {8 * found.dtype.itemsize}-bit number has; the file is "
         "damaged, or export it again with ordinary numbers"
     )
+
+
+def _check_chunks(found: Any, name: str, path: Path) -> None:
+    """Refuse numbers in chunks of which one is missing, where the library would put zeros.
+
+    The places of chunks stand in an index without a checksum. ("HDF5 File Format Specification", III.A.1.)
+    """
+    if found.chunks is None or not found.size:
+        return
+    grid = product(*(range(0, n, step) for n, step in zip(found.shape, found.chunks, strict=True)))
+    stored: set[tuple[int, ...]] = set()
+    found.id.chunk_iter(lambda chunk: stored.add(chunk.chunk_offset))
+    if missing := [at for at in grid if at not in stored]:
+        raise InputError(
+            f"{path}: {name!r} lacks the numbers from index {', '.join(map(str, missing[0]))} on, "
+            f"one of its chunks of {found.chunks}; the file is damaged, or was not written to its end: export it again"
+        )
 
 
 def _text(value: Any) -> str:

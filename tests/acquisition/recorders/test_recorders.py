@@ -260,6 +260,21 @@ def test_hdf5_numbers_of_fewer_digits_than_their_bits_have_are_refused(tmp_path:
         read_columns(path, layout(rate_variable="fs"))
 
 
+@pytest.mark.parametrize("newer", [False, True])
+def test_hdf5_numbers_that_lack_a_chunk_are_refused(tmp_path: Path, newer: bool) -> None:
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w", libver="latest" if newer else "earliest") as file:
+        file["fs"] = RATE
+        file.create_dataset("force", data=FORCE, chunks=(1, 16), compression="gzip")
+        acc = file.create_dataset("acc", FORCE.shape, "f8", chunks=(1, 16), compression="gzip")
+        acc[0], acc[1, :32], acc[1, 48:] = MOTION[0], MOTION[1, :32], MOTION[1, 48:]
+    with pytest.raises(InputError, match=r"'acc' lacks the numbers from index 1, 32 on, one of its chunks"):
+        read_columns(path, layout(rate_variable="fs"))
+    with h5py.File(path, "a") as file:
+        file["acc"][1] = MOTION[1]
+    assert read_columns(path, layout(rate_variable="fs")).points[0].count == HITS
+
+
 @pytest.mark.parametrize("kind", [">f8", "<f4", "<i2", ">i4", "u1"])
 def test_hdf5_numbers_of_any_ordinary_kind_are_read(tmp_path: Path, kind: str) -> None:
     values = np.round(30 * np.abs(FORCE)).astype(kind)
