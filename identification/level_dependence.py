@@ -31,8 +31,8 @@ class LevelDependence(Displayed):
         Which point and run each hit belongs to.
     shifts, sigmas : (n_hits, n_modes) arrays
         ln f of each hit less that identified, and the standard deviation by the misfit of this hit alone [-].
-    damping_shifts : (n_hits, n_modes) array
-        Damping ratio of each hit less that identified [-].
+    damping_shifts, damping_sigmas : (n_hits, n_modes) arrays
+        Damping ratio of each hit less that identified, and its standard deviation likewise [-].
     """
 
     slope: FloatArray
@@ -47,10 +47,12 @@ class LevelDependence(Displayed):
     shifts: FloatArray
     sigmas: FloatArray
     damping_shifts: FloatArray
+    damping_sigmas: FloatArray
 
     def modes(self, which: IntArray) -> LevelDependence:
         """Return the same of some of the modes, by their numbers ``which``, (n,)."""
         each = ("slope", "slope_sigma", "damping_slope", "damping_slope_sigma")
         changed = {name: getattr(self, name)[which] for name in each}
-        changed |= {name: getattr(self, name)[:, which] for name in ("shifts", "sigmas", "damping_shifts")}
+        of_hits = ("shifts", "sigmas", "damping_shifts", "damping_sigmas")
+        changed |= {name: getattr(self, name)[:, which] for name in of_hits}
         return replace(self, **changed)

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import scipy.fft
+from scipy import stats
 
 from acquisition import HammerTest, Windows
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
@@ -101,7 +102,8 @@ def with_line_doubt(model: ModalModel, found: LevelDependence) -> ModalModel:
     """Return modes of one level whose standard deviations hold the error of the lines that brought the hits to it.
 
     Hits are about their own mean level, from where a line leads to the common one. What it errs by is the same at all
-    points, so that no difference between FRFs shows it.
+    points, so that no difference between FRFs shows it. All hits have the damping that they show in common, so that the
+    error of this is in no difference between hits either.
 
     Parameters
     ----------
@@ -114,8 +116,47 @@ def with_line_doubt(model: ModalModel, found: LevelDependence) -> ModalModel:
     moved = found.level - np.mean(_means(levels, found.point, np.ones_like(levels)))
     spread = np.array(model.pole_covariance)
     spread[:, 0, 0] += np.where(follows_level(found), moved * found.slope_sigma, 0.0) ** 2
-    sigma = model.modal.frequency * np.sqrt(spread[:, 0, 0])
-    return replace(model, pole_covariance=spread, modal=replace(model.modal, frequency_sigma=sigma))
+    spread[:, 1, 1] = np.where(
+        follows_level(found), np.maximum(spread[:, 1, 1], hits_damping(found)[1] ** 2), spread[:, 1, 1]
+    )
+    modal = replace(
+        model.modal,
+        frequency_sigma=model.modal.frequency * np.sqrt(spread[:, 0, 0]),
+        damping_sigma=np.sqrt(spread[:, 1, 1]),
+    )
+    return replace(model, pole_covariance=spread, modal=modal)
+
+
+def hits_damping(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
+    """Return the damping that hits show at the common level, less the model's, and its standard deviation.
+
+    Averages that are smeared have broader peaks than any hit has. The hits are weighted as those of
+    `slopes.level_dependence`; the standard deviation is that of leaving out one point after the other (MacKinnon and
+    White, J. Econometrics 29 (1985) 305-325, HC3), as hits at one point have errors in common, and widened for the
+    number of points that count, so that 1.96 of it are a 95 % interval.
+
+    Returns
+    -------
+    damping, sigma : (n_modes,) arrays [-]
+    """
+    shifts = found.damping_shifts - _damping_by_level(found)
+    weight = 1 / (found.damping_sigmas**2 + np.median(found.damping_sigmas, axis=0) ** 2)
+    several = found.point.max() > 0
+    group = found.point if several else np.arange(len(shifts))
+    member = (group[:, None] == np.arange(group.max() + 1)).astype(np.float64)
+    share = member.T @ (weight / weight.sum(axis=0))
+    damping = np.sum(weight * shifts, axis=0) / weight.sum(axis=0)
+    pull = member.T @ (weight / weight.sum(axis=0) * (shifts - damping))
+    counted = 1 / np.sum(share**2, axis=0)
+    wider = stats.t.ppf(0.975, np.maximum(counted - 1, 1.0)) / stats.norm.ppf(0.975)
+    least = np.finfo(float).eps
+    return damping, wider * np.sqrt(np.sum((pull / np.maximum(1 - share, least)) ** 2, axis=0))
+
+
+def _damping_by_level(found: LevelDependence) -> FloatArray:
+    """Return by how much the damping of each hit differs from that at the common level, (n_hits, n_modes) [-]."""
+    sure = np.nan_to_num(np.abs(found.damping_slope) / found.damping_slope_sigma) > SURE
+    return np.outer(found.levels - found.level, np.where(sure, found.damping_slope, 0.0))
 
 
 def hit_residues(model: ModalModel, data: FrfSet, poles: ComplexArray, weights: Weights) -> ComplexArray:
@@ -141,11 +182,8 @@ def hit_shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     beside = found.shifts - line - offset
     scatter = np.maximum(np.median(np.abs(beside), axis=0) ** 2, np.finfo(float).tiny)
     beside = np.where(follows_level(found), beside * scatter / (scatter + found.sigmas**2), 0.0)
-    sure = np.nan_to_num(np.abs(found.damping_slope) / found.damping_slope_sigma) > SURE
-    by_level = np.outer(moved, np.where(sure, found.damping_slope, 0.0))
-    # averages that are smeared have broader peaks than any hit has
-    damping = np.broadcast_to(np.median(found.damping_shifts - by_level, axis=0), line.shape)
-    here = np.stack([offset + line + beside, damping + by_level], axis=-1)
+    damping = np.broadcast_to(hits_damping(found)[0], line.shape)
+    here = np.stack([offset + line + beside, damping + _damping_by_level(found)], axis=-1)
     return here, np.stack([offset, damping], axis=-1)
 
 

@@ -97,9 +97,9 @@ def level_dependence(
     lines = [_slopes(levels, common, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
     recorded = LevelDependence(
         *lines[0], *lines[1], common, float(levels.min()), float(levels.max()), levels, point,
-        shifts[:, :, 0], np.sqrt(variances[:, :, 0]), shifts[:, :, 1],
+        shifts[:, :, 0], np.sqrt(variances[:, :, 0]), shifts[:, :, 1], np.sqrt(variances[:, :, 1]),
     )  # fmt: skip
-    return _by_effective_levels(recorded, variances)
+    return _by_effective_levels(recorded)
 
 
 def follows_level(found: LevelDependence) -> BoolArray:
@@ -107,21 +107,18 @@ def follows_level(found: LevelDependence) -> BoolArray:
     return np.asarray(np.nan_to_num(np.abs(found.slope) / found.slope_sigma) > SURE)
 
 
-def _by_effective_levels(found: LevelDependence, variances: FloatArray) -> LevelDependence:
-    """Return lines over what the modes show of the levels, for those over the recorded ones.
-
-    Variances (n_hits, n_modes, 2) are those of the shifts of ln f and the damping ratio.
-    """
+def _by_effective_levels(found: LevelDependence) -> LevelDependence:
+    """Return lines over what the modes show of the levels, for those over the recorded ones."""
     follows = follows_level(found)
     if np.count_nonzero(follows) < 2:
         return found
     effective = effective_levels(
         found.levels, found.level, found.point,
-        found.shifts[:, follows], variances[:, follows, 0], found.slope[follows], bent=BENT,
+        found.shifts[:, follows], found.sigmas[:, follows] ** 2, found.slope[follows], bent=BENT,
     )  # fmt: skip
     lines = [
-        _slopes(effective.levels, found.level, found.point, shifts, variances[:, :, i])
-        for i, shifts in enumerate((found.shifts, found.damping_shifts))
+        _slopes(effective.levels, found.level, found.point, shifts, sigmas**2)
+        for shifts, sigmas in ((found.shifts, found.sigmas), (found.damping_shifts, found.damping_sigmas))
     ]
     (slope, own), (damping, its_own) = lines
     return replace(
