@@ -24,6 +24,7 @@ class Outcome:
     frequency_inside: int
     damping_inside: int
     frequency_z: list[float]
+    damping_z: list[float]
     level: float
     cpu: float
 
@@ -52,8 +53,8 @@ def counted(
     missed = [float(hertz[r]) for r in np.flatnonzero(out) if r not in mine]
     inside = int(np.sum(np.abs(f_z) < 1.96)), int(np.sum(np.abs(d_z) < 1.96))
     level = _level(setup, model, mine, theirs) if pairs else np.nan
-    z = [round(float(z), 2) for z in f_z]
-    return Outcome(kind, seed, int(out.sum()), len(pairs), missed, names, *inside, z, level, cpu)
+    z = [[round(float(z), 2) for z in of] for of in (f_z, d_z)]
+    return Outcome(kind, seed, int(out.sum()), len(pairs), missed, names, *inside, *z, level, cpu)
 
 
 def _level(setup: Setup, model: ModalModel, mine: list[int], theirs: list[int]) -> float:

@@ -11,12 +11,11 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.alignment import aligned, distinct
-from identification.fit.course import without_course
 from identification.fit.drift import Drift, carried_over, estimate_drift
 from identification.fit.equations import background
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.projection import State
-from identification.fit.equations.pruning import inside
+from identification.fit.equations.pruning import inside, pole_covariance
 from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.noise import leakage, window_shaped
@@ -38,6 +37,10 @@ _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
 _COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
+_ROUNDS, _SETTLED = (
+    10,
+    0.2,
+)  # rounds over shifts at the most, and the last step of a pole in standard deviations
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
@@ -119,13 +122,13 @@ def fit_candidates(
         If no candidate is a mode of the band.
     """
     ladder = background.term_ladder(band)
-    data = frfs if course is None else without_course(frfs, start, course, ladder[0])
+    known = None if course is None else Drift.common_to(start, course)
+    data = frfs if known is None else carried_over(frfs, start, known.shift, powers=ladder[0])
     fit = refine(data, start, uniform_weights(data), powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     weights = search_weights(data, fit)
     fit = refine(data, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     fit = without_split_modes(data, pruned(data, fit, weights, band, iterations=SHORT, tolerance=COARSE))
-    known = None if course is None else Drift.common_to(fit.poles, course)
-    data, fit, drift = aligned(frfs, fit, known)
+    data, fit, drift = aligned(frfs, fit, None if course is None else Drift.common_to(fit.poles, course))
     fit = completed(data, fit, band, ladder)
     if drift.variance.any():
         data, fit, drift = aligned(frfs, without_split_modes(data, fit), drift)
@@ -236,7 +239,8 @@ def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArr
 
 def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself, carry over to common poles and refine until all agree."""
-    data = carried_over(frfs, fit, drift.at(fit.poles))
+    powers = fit.linear.powers
+    data = carried_over(frfs, fit.poles, drift.at(fit.poles).shift, powers=powers)
     residual = left_over(data, fit)
     absorbed = absorbed_by(data, fit, search_weights(data, fit, residual))
     weights, variance, measured = _noise(data, fit, residual, absorbed)
@@ -244,16 +248,36 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
         fit = _refined(data, fit, weights, band, COARSE)
         used, fitted = (weights, variance, measured), data
         drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
-        data = carried_over(frfs, fit, drift)
+        data = carried_over(frfs, fit.poles, drift.shift, powers=powers, weights=weights)
         residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
         weights, variance, measured = _noise(data, fit, residual, absorbed)
     known = None
     if data is fitted and np.abs(np.log(variance / used[1])).max() < _SAME_NOISE:
         (weights, variance, measured), known = used, fit.equations
     fit = _refined(data, fit, weights, band, _FINE, known)
-    drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
+    data, fit, drift = _settled(frfs, data, fit, drift, weights, band)
     residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
     return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+
+
+def _settled(
+    frfs: FrfSet, data: FrfSet, fit: Fit, drift: Drift, weights: Weights, band: tuple[float, float]
+) -> tuple[FrfSet, Fit, Drift]:
+    """Carry over and refine until the poles rest: what is left of an FRF stays at its own peak, so where that lies half
+    a width beside the common one, a round mends only a part.
+    """
+    for _ in range(_ROUNDS):
+        drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
+        if not drift.shift.any():
+            break
+        data = carried_over(frfs, fit.poles, drift.shift, powers=fit.linear.powers, weights=weights)
+        before, fit = fit.poles, _refined(data, fit, weights, band, _FINE)
+        sigma = np.sqrt(np.diag(pole_covariance(fit)))
+        if len(before) == len(fit.poles) and np.all(
+            np.abs((fit.poles - before).view(np.float64)) < _SETTLED * sigma
+        ):
+            break
+    return data, fit, drift
 
 
 def _noise(

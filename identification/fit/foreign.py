@@ -17,7 +17,7 @@ import numpy as np
 from scipy import signal, stats
 from scipy.ndimage import uniform_filter1d
 
-from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from acquisition.quantities import hertz
 from acquisition.warned import Consequential
@@ -90,7 +90,7 @@ class _Peaks:
     place : (n,) array
         Where they are [ln Hz].
     reach : (n,) array
-        How near another must lie to be the same: half-power width and a line [-].
+        How near another must lie to be the same: half of the half-power width [-].
     above : (n,) array
         Logarithm of their magnitude over what is about them [-].
     """
@@ -165,7 +165,34 @@ def _peaks(frfs: FrfSet, rows: IntArray) -> _Peaks:
     above = level - uniform_filter1d(level, 2 * round(ABOUT / step) + 1, mode="nearest")
     at, _ = signal.find_peaks(above, height=0.0, prominence=SHOWN * np.log(CLEAR))
     width = signal.peak_widths(np.exp(above), at, rel_height=1.0 - np.sqrt(0.5))[0] * step
-    return _Peaks(grid[at], width + frfs.df / np.exp(grid[at]), above[at])
+    unit = frfs.values[rows] / np.sqrt(power.mean(axis=1, keepdims=True))
+    poles = np.array([_pole(frfs, unit, g, w) for g, w in zip(grid[at], width, strict=True)], complex)
+    here = np.abs(np.log(np.maximum(poles.imag, 1e-9) / (2 * np.pi)) - grid[at]) <= width
+    poles, kept = poles[here], at[here]
+    return _Peaks(np.log(poles.imag / (2 * np.pi)), np.abs(poles.real) / poles.imag, above[kept])
+
+
+def _pole(frfs: FrfSet, values: ComplexArray, place: float, width: float) -> complex:
+    """Return the pole of the lines about a peak [rad/s], found far closer than to a line.
+
+    There s H = p H + a + b s in each FRF: what of H is no straight line over s gives p by least squares.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    values : (n, n_lines) array
+        Those of them that share the pole [any].
+    place, width : float
+        Where the peak is, and its half-power width [ln Hz, -].
+    """
+    middle = int(np.abs(frfs.frequency - np.exp(place)).argmin())
+    reach = max(2, round(width * np.exp(place) / frfs.df))
+    lines = slice(max(0, middle - reach), middle + reach + 1)
+    s = 2j * np.pi * (frfs.frequency[lines] - frfs.frequency[middle])
+    straight = np.linalg.qr(np.stack([np.ones_like(s), s], axis=1))[0]
+    bent, moved = (h - (h @ straight.conj()) @ straight.T for h in (values[:, lines], values[:, lines] * s))
+    return complex(2j * np.pi * frfs.frequency[middle] + np.vdot(bent, moved) / np.vdot(bent, bent).real)
 
 
 def _largest(peaks: list[_Peaks]) -> IntArray:

@@ -90,3 +90,14 @@ def test_an_frf_near_a_node_stays() -> None:
     values[6] = 1e-3 * (rng.standard_normal(len(LINES)) + 1j * rng.standard_normal(len(LINES)))
     assert not foreign_frfs(replace(frfs, values=values)).rows.any()
     assert frfs.responses[6] == Dof(7, 3)
+
+
+def test_peaks_that_lie_less_than_a_line_beside_the_others_are_told_apart() -> None:
+    coarse, rng = lines(df=1.0, low=20.0, high=340.0), np.random.default_rng(3)
+    truth, pairs = structure(HERTZ, (0.003,) * 3, 13, 3), column(13)
+    frfs = truth.frfs(coarse, pairs, noise=0.005, rng=rng)
+    other = Structure(truth.poles * 0.994, truth.shapes).frfs(coarse, [pairs[5]], noise=0.005, rng=rng)
+    values = np.array(frfs.values)
+    values[5] = other.values[0]
+    assert np.flatnonzero(foreign_frfs(replace(frfs, values=values)).rows).tolist() == [5]
+    assert not foreign_frfs(frfs).rows.any()
