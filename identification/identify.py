@@ -26,7 +26,7 @@ from identification.fit.foreign import Foreign, foreign_frfs
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
-from identification.line_shapes import fit_shaped
+from identification.line_shapes import fit_shaped, with_shape
 from identification.model import ModalModel
 from identification.orders import charted
 from identification.poles import ESTIMATORS
@@ -231,7 +231,7 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
         )
     fitted = fit_shaped(data, start, band=limits, course=course)
     if fitted.frfs.line_shape is not None:
-        data = replace(data, line_shape=fitted.frfs.line_shape)
+        data = with_shape(data, fitted.frfs.line_shape.kind)
     return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)
 
 

@@ -13,6 +13,7 @@ from acquisition.frfs.line_shape import KINDS, Kind, LineShape
 from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.fit import Fitted, fit_candidates
+from identification.fit.noise.lags import contradicted
 from identification.fit.noise.leakage import follows, leaked
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
 from identification.fit.search.completion import COARSE, SHORT
@@ -43,7 +44,9 @@ def fit_shaped(
 
     A shape that nobody states counts if the fit with it explains more than the one without, each pole and term at its
     price (Schwarz, Ann. Stat. 6 (1978) 461-464), and the number of averages, which the law of leakage has beside the
-    levels of the noise, too: two poles under a half-power width apart imitate the line shape.
+    levels of the noise, too: two poles under a half-power width apart imitate the line shape. The candidates, and
+    the poles of the fit without a shape, start those with one, imitations made one. A shape that the lags of the FRFs
+    contradict does not count, however badly they fit without.
     Beside a course only a stated window counts: what a course leaves on peaks passes for errors of averages.
 
     Parameters
@@ -56,53 +59,83 @@ def fit_shaped(
     EstimationError
         If no candidate is a mode of the band.
     """
-    kinds = _worth_a_fit(frfs, start) if course is None or frfs.window == "hann" else []
+    if not _may_have_a_shape(frfs, start) or (course is not None and frfs.window != "hann"):
+        return fit_candidates(frfs, start, band=band, course=course)
+    stated, possible = frfs.window == "hann", list(KINDS)
     fits: list[Fitted] = []
     failure: EstimationError | None = None
-    for shaped, poles in [(_with(frfs, kind), _merged(start, frfs.df)) for kind in kinds] or [(frfs, start)]:
-        try:
-            fits.append(fit_candidates(shaped, poles, band=band, course=course))
-        except EstimationError as error:
-            failure = error
-    if kinds and frfs.window is None:
-        try:
-            fits.append(fit_candidates(frfs, start, band=band))
-        except EstimationError as error:
-            failure = error
+    starts = [_merged(start, np.ones(len(start)), frfs.df)]
+    try:
+        fits.append(fit_candidates(frfs, start, band=band, course=course))
+        fit = fits[0].fit
+        possible = [kind for kind in KINDS if not contradicted(with_shape(frfs, kind), fit)]
+        starts.append(_merged(fit.poles, np.abs(fit.linear.residues).sum(axis=0), frfs.df))
+    except EstimationError as error:
+        failure = error
+    if stated:
+        fits = []
+    for few in starts:
+        for kind in KINDS if stated else _worth_a_fit(frfs, few, possible):
+            try:
+                fits.append(fit_candidates(with_shape(frfs, kind), few, band=band, course=course))
+            except EstimationError as error:
+                failure = error
     if not fits:
         raise failure or EstimationError(f"{frfs.source}: no candidate is a mode of the band")
     return min(fits, key=lambda fitted: _price(fitted) - (0.0 if fitted.frfs.line_shape else STRONG))
 
 
-def _worth_a_fit(frfs: FrfSet, start: ComplexArray) -> list[Kind]:
-    """Return the line shapes to fit: both where a window is stated, else those with which few poles fit better."""
+def _may_have_a_shape(frfs: FrfSet, start: ComplexArray) -> bool:
+    """Tell whether FRFs may have a line shape: none is excluded, and peaks are not far wider than lines."""
     known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None
-    if known or not np.any(-start.real < BROAD * frfs.df):
+    return not known and bool(np.any(-start.real < BROAD * frfs.df))
+
+
+def _worth_a_fit(frfs: FrfSet, few: ComplexArray, possible: list[Kind]) -> list[Kind]:
+    """Return the line shapes with which few poles fit better than without, by one measure or the other.
+
+    Those that the lags of the FRFs contradict are left out.
+    """
+    if not possible:
         return []
-    if frfs.window == "hann":
-        return list(KINDS)
-    few = _merged(start, frfs.df)
     frfs = frfs.select(list(range(0, len(frfs.values), -(-len(frfs.values) // ASKED))))
-    plain, shaped = _of_few(frfs, few), np.array([_of_few(_with(frfs, kind), few) for kind in KINDS])
-    best = {
-        int(k) for k, better in zip(shaped.argmin(axis=0), shaped.min(axis=0) < plain, strict=True) if better
-    }
-    return [KINDS[k] for k in sorted(best)]
+    plain = _of_few(frfs, few)[0]
+    best: list[tuple[float, float]] = []
+    kinds: list[Kind] = []
+    for kind in possible:
+        measures, fit = _of_few(with_shape(frfs, kind), few)
+        if not contradicted(with_shape(frfs, kind), fit):
+            best.append(measures)
+            kinds.append(kind)
+    table = np.array(best).reshape(-1, 2)
+    return [
+        k for k, own in zip(kinds, table, strict=True) if np.any((own == table.min(axis=0)) & (own < plain))
+    ]
 
 
-def _with(frfs: FrfSet, kind: Kind) -> FrfSet:
+def with_shape(frfs: FrfSet, kind: Kind) -> FrfSet:
+    """Return FRFs with a line shape.
+
+    Those smoothed over three lines go without their first and last line, to which a neighbour is missing: what an
+    analyser makes of these is known of no file.
+    """
+    if kind == "smoothed":
+        inner = frfs.frequency[[1, -2]] + 0.5 * frfs.df * np.array([-1.0, 1.0])
+        frfs = frfs.band(float(inner[0]), float(inner[1]))
     return replace(frfs, line_shape=LineShape(kind, 1.0 / frfs.df))
 
 
-def _merged(poles: ComplexArray, df: float) -> ComplexArray:
-    """Return poles with those that a window shows as one replaced by their mean, rising."""
-    poles = poles[np.argsort(poles.imag)]
+def _merged(poles: ComplexArray, size: FloatArray, df: float) -> ComplexArray:
+    """Return poles with those that a window shows as one replaced by their mean, weighted by their size, rising."""
+    order = np.argsort(poles.imag)
+    poles, size = poles[order], size[order]
     cuts = np.flatnonzero(np.diff(poles.imag) > RESOLVED * 2 * np.pi * df) + 1
-    return np.array([part.mean() for part in np.split(poles, cuts)], dtype=np.complex128)
+    parts = zip(np.split(poles, cuts), np.split(size, cuts), strict=True)
+    return np.array([np.average(part, weights=weight) for part, weight in parts], dtype=np.complex128)
 
 
-def _of_few(frfs: FrfSet, poles: ComplexArray) -> tuple[float, float]:
-    """Return two measures of how badly poles fit that are refined, but neither struck off nor completed [-].
+def _of_few(frfs: FrfSet, poles: ComplexArray) -> tuple[tuple[float, float], Fit]:
+    """Return two measures of how badly poles fit that are refined, but neither struck off nor completed [-]; the fit.
 
     The misfit over the power of each FRF, in which a mode that the candidates lack weighs little; and the price, in
     which the error of averages on a narrow peak, of the size of the peak, weighs little.
@@ -112,7 +145,7 @@ def _of_few(frfs: FrfSet, poles: ComplexArray) -> tuple[float, float]:
     fit = refine(frfs, fit.poles, weights, iterations=SHORT, tolerance=COARSE)
     residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
     variance = noise_weights(frfs, residual, absorbed, leaked(frfs, fit.poles, fit.linear.residues))[1]
-    return misfit, _criterion(frfs, fit, residual, variance)
+    return (misfit, _criterion(frfs, fit, residual, variance)), fit
 
 
 def _price(fitted: Fitted) -> float:
@@ -122,6 +155,9 @@ def _price(fitted: Fitted) -> float:
 
 def _criterion(frfs: FrfSet, fit: Fit, residual: ComplexArray, variance: FloatArray) -> float:
     n_frf = len(residual)
+    smoothed = frfs.line_shape is not None and frfs.line_shape.kind == "smoothed"
+    common = slice(None) if smoothed else slice(1, -1)  # the lines that every shape is fitted to
+    residual, variance = residual[:, common], variance[:, common]
     lack = float(np.sum(np.log(variance) + np.abs(residual) ** 2 / variance))
     unknowns = len(fit.poles) * (2 * n_frf + 2) + n_frf * len(fit.linear.powers) + follows(frfs)
     return float(2.0 * lack + unknowns * np.log(2 * residual.size))

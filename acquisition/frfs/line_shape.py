@@ -59,6 +59,11 @@ class LineShape:
         how = "" if stated else '; state frf_window = "none" if there was no window'
         return f"the FRFs are fitted as {law}: each pole has that line shape{how}"
 
+    @property
+    def silent(self) -> tuple[float, float]:
+        """Lags between which the shape leaves under 2 % of an impulse response, over the length of a block [-]."""
+        return (0.7, 0.9) if self.kind == "averaged" else (0.46, 0.54)
+
     def pole(self, distance: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Return what stands for 1 / (s - p), and its derivative by p, shapes as ``distance`` [s, s^2].
 

@@ -40,12 +40,15 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     shape = fit.linear.residues.shape
     noise = NoiseFactors(pole, np.broadcast_to(free, shape), np.ones(len(pole)), np.broadcast_to(held, shape))
     stated = hit_factors(frfs, fit, fitted.weights, modes, noise)
-    if frfs.line_shape is not None:
-        misfit = np.maximum(misfit, line_factors(fitted))
+    lines = np.ones(len(pole)) if frfs.line_shape is None else line_factors(fitted)
+    alone = np.maximum(misfit, lines)
     if stated is None:
-        return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes, misfit * noise.held)
-    poles, constants = np.maximum(stated.poles, misfit), np.maximum(stated.constants, misfit)
-    held = np.maximum(stated.held, misfit)
+        poles = np.maximum(
+            misfit * noise.poles, lines
+        )  # what lines scatter by holds what their FRFs have in common
+        return NoiseFactors(poles, alone * noise.constants, noise.shapes, alone * noise.held)
+    poles, constants = np.maximum(stated.poles, alone), np.maximum(stated.constants, alone)
+    held = np.maximum(stated.held, alone)
     return NoiseFactors(poles, constants, stated.shapes, held, stated.by_hits)
 
 

@@ -184,3 +184,57 @@ def test_two_close_modes_are_no_window():
     model = identify(frf_set(frequency, noisy(exact, 0.005, np.random.default_rng(2))))
     assert model.frfs.line_shape is None
     assert np.sort(np.abs(poles)) / (2 * np.pi) == pytest.approx(model.modal.frequency, rel=1e-4)
+
+
+def test_sharp_modes_that_move_from_frf_to_frf_are_no_window():
+    """Peaks a fraction of a line wide and alone in their line ring to the end of a block: no window leaves that."""
+    rng = np.random.default_rng(5)
+    hertz, damping = np.array([445.5, 867.3, 1013.9]), np.array([7e-5, 1.4e-4, 2.6e-4])
+    poles = 2 * np.pi * hertz * (-damping + 1j * np.sqrt(1 - damping**2))
+    place = np.arange(1, 13) / 13
+    shapes = np.array([np.sin(np.pi * k * place / 2) for k in (1, 3, 2)]).T
+    load = np.where(place > 0.6, place, 0.0)[:, None] ** 4 * shapes**2  # by the mass of a sensor that roves
+    frequency = np.arange(20.0, 1500.0, 0.25)
+    s = 2j * np.pi * frequency
+    residues = shapes / (2j * poles.imag)
+    exact = np.concatenate(
+        [
+            response(poles * (1 - 1e-3 * moved), row[None, :], s)
+            for row, moved in zip(residues, load, strict=True)
+        ]
+    )
+    model = identify(frf_set(frequency, noisy(exact, 1e-4, rng)))
+    assert model.frfs.line_shape is None
+    assert model.modal.frequency == pytest.approx(hertz, rel=3e-4)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_smoothed_lines_far_wider_than_peaks(seed):
+    """One pole on each of three lines imitates the shape; a first mode near the band's edge had none beside it."""
+    rng = np.random.default_rng(seed)
+    hertz = np.array([7.6, 47.5, 133.0]) * rng.uniform(0.95, 1.05, 3)
+    damping = np.array([0.005, 0.002, 0.001])
+    poles = 2 * np.pi * hertz * (-damping + 1j * np.sqrt(1 - damping**2))
+    shapes = rng.standard_normal((12, 3))
+    frequency = np.arange(3.0, 172.0, 0.45)
+    s = 2j * np.pi * np.concatenate([[2.55], frequency, [frequency[-1] + 0.45]])
+    exact = response(poles, shapes / (2j * poles.imag), s)
+    smooth = 0.25 * exact[:, :-2] + 0.5 * exact[:, 1:-1] + 0.25 * exact[:, 2:]
+    modal = identify(frf_set(frequency, noisy(smooth, 0.005, rng))).modal
+    assert len(modal.frequency) == 3
+    assert np.max(np.abs(modal.frequency - hertz) / modal.frequency_sigma) < 4.0
+
+
+def test_end_lines_to_which_a_neighbour_is_missing():
+    """An analyser that smooths over three lines leaves the first and the last as they are, which bias a mode there."""
+    poles, residues = structure(0.03)
+    frequency = np.arange(5.0, 156.0, 5.0)
+    errors = []
+    for seed in range(4):
+        values = response(poles, residues, 2j * np.pi * frequency)
+        values = noisy(values, 0.002, np.random.default_rng(seed))
+        values[:, 1:-1] = 0.25 * values[:, :-2] + 0.5 * values[:, 1:-1] + 0.25 * values[:, 2:]
+        model = identify(frf_set(frequency, values))
+        assert model.frfs.frequency[[0, -1]] == pytest.approx([10.0, 150.0])
+        errors.append(model.modal.frequency[-1] - 142.0)
+    assert abs(np.mean(errors)) < 0.05
