@@ -6,8 +6,8 @@ its neighbours' products included, is the covariance of the fit (Newey and West,
 lines; Liang and Zeger, Biometrika 73 (1986) 13-22, over outputs).
 
 Lines smoothed by a quarter, a half and a quarter have noise that was smoothed with them, or noise that came after, or
-both. The law of either is known; how much there is of each follows from the residual: what a fit leaves of few lines has
-itself lost what the fit took for the modes."""
+both. The law of either is known; how much there is of each follows from the residual: what a fit leaves of few lines
+has itself lost what the fit took for the modes."""
 
 from __future__ import annotations
 
