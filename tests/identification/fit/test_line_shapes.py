@@ -16,6 +16,8 @@ from identification.fit.equations.basis import Axis
 from identification.fit.equations.residues import Residues, synthesise
 from identification.fit.noise.leakage import leaked, shared
 from identification.fit.noise.levels import local_mean
+from identification.line_shapes import fit_shaped
+from identification.uncertainty.line_scatter import line_factors
 
 HERTZ = np.array([63.6, 81.5, 97.0, 115.0, 129.0, 142.0])
 
@@ -238,3 +240,18 @@ def test_end_lines_to_which_a_neighbour_is_missing():
         assert model.frfs.frequency[[0, -1]] == pytest.approx([10.0, 150.0])
         errors.append(model.modal.frequency[-1] - 142.0)
     assert abs(np.mean(errors)) < 0.05
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_noise_that_was_smoothed_with_the_lines_is_told_from_noise_that_came_after(before):
+    poles, residues = structure(0.03)
+    frequency = np.arange(5.0, 156.0, 5.0)
+    rng = np.random.default_rng(1)
+    values = response(poles, residues, 2j * np.pi * np.concatenate([[1e-3], frequency, [160.0]]))
+    values = noisy(values, 0.01, rng) if before else values
+    smooth = 0.25 * values[:, :-2] + 0.5 * values[:, 1:-1] + 0.25 * values[:, 2:]
+    smooth = smooth if before else noisy(smooth, 0.01, rng)
+    fitted = fit_shaped(frf_set(frequency, smooth), poles, band=(5.0, 155.0))
+    assert fitted.frfs.line_shape == LineShape("smoothed", 0.2)
+    factors = line_factors(fitted)
+    assert np.all(factors > 1.3) if before else np.all(factors < 1.2)
