@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from acquisition.archives import SMALL
 from acquisition.errors import ModalkitError, StudyError
 from acquisition.libraries import library
 from updating.models.fields import Sparse
@@ -21,7 +22,6 @@ from updating.models.imported.naming import chosen
 from updating.models.imported.nastran import op2, op4_binary, op4_text
 from updating.models.imported.nastran.contents import Held
 from updating.models.imported.numerals import check_order
-from updating.models.imported.packed import SMALL
 
 FULLEST = 100
 """Bytes that a matrix of OUTPUT2 may take in memory for each byte of its file [-]: pyyeti makes room for all rows and
