@@ -34,7 +34,7 @@ def _case(name: str, content: bytes, matrices: Sequence[np.ndarray]) -> Case:
 
 
 WIDTH = 23
-"""Characters of a number in a text of pyyeti."""
+"""Characters of a number in a text of OUTPUT4."""
 
 
 def _parted(text: bytes) -> bytes:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 import struct
-import sys
 import time
 import tracemalloc
 from pathlib import Path
@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from imported_cases import beam_matrices, beam_table, clamp, spec_of
+from labelled_cases import places, punched
 from nastran_cases import LAYOUTS, output2, write_op4
 from scipy import sparse
 
-from acquisition.errors import InputError, StudyError
+from acquisition.errors import StudyError
 from updating.models import build_structure
 from updating.models.imported import read_imported, read_matrix
 
@@ -124,21 +125,55 @@ def test_matrices_that_cannot_be_are_refused(tmp_path: Path) -> None:
         read_matrix(endless)
 
 
-def test_a_large_matrix_of_output2_is_refused_before_it_takes_all_memory(tmp_path: Path) -> None:
+def test_a_large_matrix_of_output2_takes_the_room_of_its_entries(tmp_path: Path) -> None:
     path = tmp_path / "k.op2"
     content = output2({"KAA": sparse.eye_array(300).tocsr()})
     path.write_bytes(content.replace(struct.pack("<2i", 300, 300), struct.pack("<2i", 300, 20_000), 1))
-    with pytest.raises(StudyError, match=r"20000 rows, of which the file has 300 entries.*with OUTPUT4"):
+    tracemalloc.start()
+    with pytest.raises(StudyError, match="the matrix is 20000 x 300; stiffness and mass are square"):
+        read_matrix(path)
+    assert tracemalloc.get_traced_memory()[1] < 5_000_000
+    tracemalloc.stop()
+
+
+def _exponents(text: str, letter: str, first: int = 0) -> str:
+    """Return a text whose exponents, from a character on, begin with another letter."""
+    return text[:first] + re.sub(r"(?<=\d)E(?=[+-])", letter, text[first:])
+
+
+@pytest.mark.parametrize("layout", ["dense text", "sparse text", "wide sparse text"])
+@pytest.mark.parametrize("letter", ["D", "d", "e"])
+@pytest.mark.parametrize("later", [False, True])
+def test_exponents_of_fortran_are_read_wherever_they_begin(
+    tmp_path: Path, layout: str, letter: str, later: bool
+) -> None:
+    """The first matrix is all zero, so that no number in front shows the letter."""
+    path = write_op4(tmp_path / "model.op4", layout, BAA=0 * K, KAA=K, MAA=M)
+    text = path.read_text()
+    path.write_text(_exponents(text, letter, text.index("MAA") if later else 0))
+    for kind, matrix in (("stiffness", K), ("mass", M)):
+        np.testing.assert_array_equal(read_matrix(path, kind).toarray(), matrix.toarray())
+
+
+def test_an_exponent_of_three_digits_has_no_letter(tmp_path: Path) -> None:
+    path = write_op4(tmp_path / "model.op4", "dense text", KAA=np.diag([2.0, -3.0]))
+    path.write_text(re.sub(r"(-3\.0+)E\+00", r"\1-120", path.read_text()))
+    np.testing.assert_array_equal(read_matrix(path).toarray(), np.diag([2.0, -3e-120]))
+    path.write_text(path.read_text().replace("-120", "+-20"))
+    with pytest.raises(StudyError, match="not a whole file of OUTPUT4"):
         read_matrix(path)
 
 
-def test_the_library_is_named_with_its_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = write_op4(tmp_path / "k.op4", "dense text", KAA=K)
-    monkeypatch.setitem(sys.modules, "pyyeti.nastran.op4", None)
-    with pytest.raises(
-        InputError, match=r"read by pyyeti, which is not installed; install modalkit-ema\[nastran\]"
-    ):
-        read_matrix(path)
+def test_rows_beside_nodes_and_directions_are_refused_by_what_they_are(tmp_path: Path) -> None:
+    free = beam_matrices(ELEMENTS)
+    by_rows = write_op4(tmp_path / "free.op4", "sparse binary", KAA=free[0], MAA=free[1])
+    named = punched(tmp_path / "free.pch", KAAX=free[0], MAAX=free[1])
+    nodes = places(tmp_path / "nodes.csv")
+    for stiffness, mass in ((by_rows, named), (named, by_rows)):
+        with pytest.raises(
+            StudyError, match=r"free\.pch: its entries name nodes .* and those of free\.op4 have rows"
+        ):
+            read_imported(stiffness, mass, nodes)
 
 
 HUGE = {
@@ -158,7 +193,6 @@ HUGE = {
     ],
 )
 def test_a_count_beyond_the_file_is_refused_at_once(tmp_path: Path, layout: str, count: str) -> None:
-    """pyyeti runs through a hundred million lines that are not there, or makes room for as many rows."""
     path = write_op4(tmp_path / "k.op4", layout, KAA=K)
     lines = path.read_bytes().split(b"\n")
     line, start, end = HUGE[count]

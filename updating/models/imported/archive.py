@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -13,18 +9,11 @@ from types import MappingProxyType
 import numpy as np
 from scipy import sparse
 
+from acquisition.archives import MAGIC, array_of, members
 from acquisition.arrays import AnyArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.numerals import check_order
-from updating.models.imported.packed import allowed, too_much
-
-_HEADER = re.compile(
-    rb"\s*\{\s*'descr':\s*'([<>|=]?)([fiucbSU])(\d{1,4})',\s*'fortran_order':\s*(True|False),"
-    rb"\s*'shape':\s*\(((?:\d{1,18},\s*)*(?:\d{1,18}\s*)?)\),?\s*\}\s*"
-)
-_LONGEST = 64
-"""Characters that a word among the arrays may have [-]; the names of formats have three."""
 
 Arrays = Mapping[str, AnyArray]
 
@@ -38,54 +27,16 @@ def read_archive(path: Path) -> Sparse:
         If the file is no archive, holds none or several matrices, pointers that point nowhere, or not real numbers.
     """
     try:
-        if path.read_bytes()[:6] == b"\x93NUMPY":
-            return _plain({path.stem: _array(path.read_bytes())}, path)
-        arrays = _members(path)
+        raw = path.read_bytes()
+        if raw.startswith(MAGIC):
+            return _plain({path.stem: array_of(raw)}, path)
+        arrays = {name: array_of(content) for name, content in members(path).items()}
         return _sparse(arrays, path) if "format" in arrays else _plain(arrays, path)
-    # zipfile raises NotImplementedError for ways of packing that it does not know, RuntimeError for a password
-    except (ValueError, KeyError, OSError, EOFError, NotImplementedError, RuntimeError, zlib.error,
-            zipfile.BadZipFile) as error:  # fmt: skip
+    except (ValueError, KeyError, OSError) as error:
         statement = " ".join(str(error).split())
         raise StudyError(
             f"{path}: not an .npz archive of one matrix ({statement}); use scipy.sparse.save_npz"
         ) from error
-
-
-def _members(path: Path) -> Arrays:
-    """Return the arrays of an archive, unpacked within what its size allows."""
-    packed = path.stat().st_size
-    with zipfile.ZipFile(path) as archive:
-        infos = archive.infolist()
-        if sum(info.file_size for info in infos) > allowed(packed):
-            raise too_much(path, packed)
-        if any(info.compress_size > packed for info in infos):  # zipfile would make room for them
-            raise ValueError("an array of more bytes than the archive has")
-        if len({info.filename for info in infos}) < len(infos):
-            raise ValueError("two arrays of one name")
-        return {info.filename.removesuffix(".npy"): _array(archive.read(info)) for info in infos}
-
-
-def _array(raw: bytes) -> AnyArray:
-    """Return the array of an ``.npy``: its header must say what follows it, to the byte."""
-    start = 12 if raw[6:7] == b"\x02" else 10
-    if raw[:6] != b"\x93NUMPY" or raw[6:7] not in (b"\x01", b"\x02"):
-        raise ValueError("no array of numpy in it")
-    body = start + int.from_bytes(raw[8:start], "little")
-    found = _HEADER.fullmatch(raw[start:body])
-    if found is None:
-        raise ValueError("the header of an array cannot be read, or it holds objects")
-    order, kind, size, fortran, numbers = (word.decode("ascii") for word in found.groups())
-    if kind in "SU" and int(size) > _LONGEST:
-        raise ValueError("a word of an array is too long")
-    try:
-        dtype = np.dtype(f"{order}{kind}{size}")
-    except TypeError as error:
-        raise ValueError(f"an array of {kind}{size}, which is no kind of number") from error
-    shape = tuple(int(n) for n in re.findall(r"\d+", numbers))
-    if math.prod(shape) * dtype.itemsize != len(raw) - body:
-        raise ValueError(f"an array of shape {shape} in {len(raw) - body} bytes")
-    flat = np.frombuffer(raw, dtype=dtype, offset=body)
-    return flat.reshape(shape, order="F" if fortran == "True" else "C")
 
 
 def _real(values: AnyArray, path: Path) -> AnyArray:

@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
+from acquisition.archives import allowed
 from acquisition.arrays import AnyArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.archive import compressed
 from updating.models.imported.numerals import check_order
-from updating.models.imported.packed import allowed, too_much
+from updating.models.imported.packed import too_much
 
 _HEAD, _TAG, _FLAGS = 128, 8, 8
 """Bytes of the file's head, of the tag before an element, and of the flags of an array [-]."""

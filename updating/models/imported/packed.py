@@ -1,4 +1,4 @@
-"""What packed files unpack to, never more than in proportion to what they are."""
+"""What packed files of matrices unpack to, never more than in proportion to what they are."""
 
 from __future__ import annotations
 
@@ -6,19 +6,8 @@ import gzip
 import zlib
 from pathlib import Path
 
+from acquisition.archives import allowed
 from acquisition.errors import StudyError
-
-RATIO = 30
-"""Bytes that one packed byte may become [-]: numbers as text shrink three- to twentyfold; twice as much would
-fill twice the memory."""
-
-SMALL = 10_000_000
-"""Bytes that any packed file may become, however small it is [-]: less than the libraries take that read it."""
-
-
-def allowed(packed: int) -> int:
-    """Return the bytes that so many packed bytes may become."""
-    return max(SMALL, RATIO * packed)
 
 
 def too_much(path: Path, packed: int) -> StudyError:

@@ -129,7 +129,8 @@ def read_imported(
     StudyError
         If a file cannot be read, or the matrices cannot be those of a structure.
     """
-    read = _labelled if is_labelled(stiffness) else _by_rows
+    labelled = _of_one_kind((stiffness, mass, *stiffness_parts, *mass_parts))
+    read = _labelled if labelled else _by_rows
     (whole, weight), parts, table = read(((stiffness, stiffness_parts), (mass, mass_parts)), nodes, names)
     in_si = [tuple(matrix_in_si(matrix, table, units) for matrix in own) for own in parts]
     return Imported(
@@ -150,6 +151,24 @@ Read = tuple[tuple[Sparse, Sparse], Parts, NodeTable]
 
 Files = tuple[tuple[Path, Sequence[Path]], tuple[Path, Sequence[Path]]]
 """Of the stiffness and of the mass: the file of the whole and those of the regions."""
+
+
+def _of_one_kind(paths: Sequence[Path]) -> bool:
+    """Return whether entries name nodes and directions, in all files or in none.
+
+    Raises
+    ------
+    StudyError
+        If they do in some files alone.
+    """
+    kinds = [is_labelled(path) for path in paths]
+    if len(set(kinds)) > 1:
+        named, by_rows = paths[kinds.index(True)], paths[kinds.index(False)]
+        raise StudyError(
+            f"{named}: its entries name nodes and directions, and those of {by_rows.name} have rows alone, in an order "
+            "that neither file states; export all matrices of a model in one format"
+        )
+    return kinds[0]
 
 
 def _check_named(path: Path, kind: str, name: str | None) -> None:

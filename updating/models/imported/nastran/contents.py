@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from acquisition.arrays import AnyArray
+from updating.models.fields import Sparse
 
 SINGLE, DOUBLE = 1, 2
 """Types of real matrices; from 3 on the entries are complex."""
@@ -17,7 +24,27 @@ WIDEST = 65536
 _NAME = re.compile(r"[A-Za-z]\w{0,7}", re.ASCII)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Entries that stand below each other in a column.
+
+    Parameters
+    ----------
+    column, row : int
+        Of the first, from 1.
+    count : int
+        How many [-].
+    raw : bytes
+        Their numbers as the file has them.
+    """
+
+    column: int
+    row: int
+    count: int
+    raw: bytes | memoryview
+
+
+@dataclass(frozen=True, eq=False)
 class Held:
     """A matrix in a file.
 
@@ -29,15 +56,15 @@ class Held:
         Its size [-].
     type : int
         1 and 2 are real in single and double precision, 3 and 4 complex.
-    entries : int
-        Numbers that the file has of it [-].
+    runs : tuple of Run
+        What the file has of it.
     """
 
     name: str
     rows: int
     columns: int
     type: int
-    entries: int = 0
+    runs: tuple[Run, ...] = ()
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -56,6 +83,31 @@ class Held:
     def square(self) -> bool:
         """Whether there are as many rows as columns."""
         return self.rows == self.columns
+
+    @property
+    def entries(self) -> int:
+        """How many numbers the file has of it [-]."""
+        return sum(run.count for run in self.runs)
+
+    def matrix(self, numbers: Callable[[bytes], AnyArray]) -> Sparse:
+        """Return the matrix.
+
+        Parameters
+        ----------
+        numbers : callable
+            Takes the bytes of all runs to as many real numbers as they have.
+
+        Raises
+        ------
+        ValueError
+            If something in them is no number.
+        """
+        values = np.asarray(numbers(b"".join(run.raw for run in self.runs)), dtype=np.float64)
+        counts = [run.count for run in self.runs]
+        below = np.arange(sum(counts)) - np.repeat(np.cumsum([0, *counts])[:-1], counts)
+        row = np.repeat([run.row - 1 for run in self.runs], counts).astype(np.int64) + below
+        column = np.repeat([run.column - 1 for run in self.runs], counts).astype(np.int64)
+        return Sparse(sparse.coo_array((values, (row, column)), (self.rows, self.columns)).tocsr())
 
     def check_column(self, column: int, before: int) -> bool:
         """Return whether a column (from 1) is one of the matrix; the one behind the last ends it.

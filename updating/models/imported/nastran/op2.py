@@ -1,4 +1,4 @@
-"""Files of OUTPUT2: which matrices they hold, and whether their records are whole.
+"""Files of OUTPUT2: the matrices that they hold, their records followed to the end of the file.
 
 Every record of data stands behind a key: a record of one number that is the number of words to follow, or zero and
 less at an end. In a column of a matrix the number of its first row comes in front of these words. A data block is a
@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from updating.models.imported.nastran.contents import Held
-from updating.models.imported.nastran.records import Records, whole_numbers
+from updating.models.imported.nastran.contents import Held, Run
+from updating.models.imported.nastran.records import Matrix, Records, reals, size_of, whole_numbers
 
 _DATE, _TRAILER = 3, 7
 """Words of the date that may begin a file, and of a trailer [-]."""
@@ -49,7 +49,7 @@ class _Blocks:
         return content
 
 
-def contents(raw: bytes) -> list[Held]:
+def contents(raw: bytes) -> list[Matrix]:
     """Return the matrices of a file; tables are passed over.
 
     Raises
@@ -57,7 +57,7 @@ def contents(raw: bytes) -> list[Held]:
     ValueError
         If a record is not whole, or does not belong where it is.
     """
-    blocks, found = _Blocks(raw), list[Held]()
+    blocks, found = _Blocks(raw), list[Matrix]()
     _pass_label(blocks)
     while blocks.records.left and (words := blocks.key()):
         name = bytes(blocks.data(words)).decode("latin-1").replace("\0", "").replace(" ", "")
@@ -68,7 +68,8 @@ def contents(raw: bytes) -> list[Held]:
         blocks.keys(2)
         if blocks.key() > 0:
             held = Held(name, trailer[2], trailer[1], trailer[4])
-            found.append(replace(held, entries=_entries(held, blocks)))
+            held = replace(held, runs=tuple(_runs(held, blocks)))
+            found.append((held, reals(blocks.records.order, size_of(held, blocks.word))))
         else:
             _pass_table(blocks)
     return found
@@ -86,10 +87,10 @@ def _pass_label(blocks: _Blocks) -> None:
     blocks.keys(2)
 
 
-def _entries(held: Held, blocks: _Blocks) -> int:
-    """Return the number of entries of a matrix, all its columns checked [-]."""
-    column, entries, more = 0, 0, 1
-    size = (blocks.word if held.type % 2 else 8) * (1 if held.real else 2)
+def _runs(held: Held, blocks: _Blocks) -> list[Run]:
+    """Return the entries of a matrix, all its columns checked."""
+    column, runs, more = 0, list[Run](), 1
+    size = size_of(held, blocks.word)
     while more > 0:
         column += 1
         end, words = 0, blocks.key()
@@ -97,8 +98,11 @@ def _entries(held: Held, blocks: _Blocks) -> int:
             held.check_column(column, column - 1)
             content = blocks.data(1 + words)
             count, odd = divmod(len(content) - blocks.word, size)
-            end = held.check_rows(blocks.numbers(content, 1)[0], count + bool(odd), end)
-            entries += count
+            if odd:
+                raise ValueError(f"{held.name}: column {column} has {words} words in numbers of {size} bytes")
+            row = blocks.numbers(content, 1)[0]
+            end = held.check_rows(row, count, end)
+            runs.append(Run(column, row, count, content[blocks.word :]))
             words = blocks.key()
         blocks.keys(1)
         more = blocks.key()
@@ -106,7 +110,7 @@ def _entries(held: Held, blocks: _Blocks) -> int:
         raise ValueError(f"{held.name}: {column} columns of {held.columns}")
     if blocks.records.left:
         blocks.keys(1)
-    return entries
+    return runs
 
 
 def _pass_table(blocks: _Blocks) -> None:

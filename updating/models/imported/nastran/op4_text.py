@@ -1,4 +1,4 @@
-"""Text files of OUTPUT4: which matrices they hold, and whether their lines are whole.
+"""Text files of OUTPUT4: the matrices that they hold, their lines followed to the end of the file.
 
 The layout is that of the binary files. A line stands for each record; the numbers of a column or of a string follow
 in fields of the width that the first line of the matrix states.
@@ -10,13 +10,20 @@ import itertools
 import re
 from dataclasses import dataclass, replace
 
-from updating.models.imported.nastran.contents import WIDEST, Held
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.models.imported.nastran.contents import WIDEST, Held, Run
+from updating.models.imported.nastran.records import Matrix
 
 _FORMAT = re.compile(rb"(?:1P,)?(\d{1,3})[EDed](\d{1,3})\.\d{1,3}")
 _LONG = b"|I16"
 _WHOLE = re.compile(rb"-?\d{1,15}")
 _OF_NUMBERS = b"0123456789+-.EeDd "
 """Characters of numbers in fields."""
+_EXPONENTS = bytes.maketrans(b"dD", b"EE")
+_OF_THREE = re.compile(rb"([\d.])([+-]\d{3} *)")
+"""An exponent of three digits, in front of which Fortran leaves out the letter."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +32,15 @@ class _Fields:
 
     per_line: int = 5
     width: int = 16
+
+    def numbers(self, raw: bytes) -> FloatArray:
+        """Return the numbers of fields, whose exponents begin with E, D, or the sign."""
+        words = np.frombuffer(raw.translate(_EXPONENTS), dtype=f"S{self.width}")
+        try:
+            return words.astype(np.float64)
+        except ValueError:
+            spelt = [_whole_exponent(word) for word in words.tolist()]
+            return np.array(spelt, dtype=np.float64)
 
 
 class _Lines:
@@ -51,24 +67,29 @@ class _Lines:
         self.at += 1
         return self._lines[self.at - 1]
 
-    def pass_numbers(self, count: int, fields: _Fields) -> None:
-        """Pass lines of so many numbers, each in its field."""
+    def numbers(self, count: int, fields: _Fields) -> bytes:
+        """Return the fields of so many numbers, which fill the next lines."""
         lines = -(-count // fields.per_line)
         block = self._lines[self.at : self.at + lines]
         if count < 1 or len(block) < lines:
             raise ValueError(f"{count} numbers behind line {self.at}, and {len(self._lines) - self.at} lines")
         full = fields.per_line * fields.width
         last = (count - (lines - 1) * fields.per_line) * fields.width
-        whole = [*(line[:full] for line in block[:-1]), block[-1].rstrip()]
+        whole = [line.rstrip() for line in block]
         for number, (line, size) in enumerate(zip(whole, [full] * (lines - 1) + [last], strict=True)):
             if len(line) != size or line.translate(None, _OF_NUMBERS):
                 raise ValueError(
                     f"line {self.at + 1 + number} is not of numbers in {fields.width} characters"
                 )
         self.at += lines
+        return b"".join(whole)
 
 
-def contents(raw: bytes) -> list[Held]:
+def _whole_exponent(word: bytes) -> float:
+    return float(_OF_THREE.sub(rb"\1E\2", word))
+
+
+def contents(raw: bytes) -> list[Matrix]:
     """Return the matrices of a file.
 
     Raises
@@ -76,10 +97,11 @@ def contents(raw: bytes) -> list[Held]:
     ValueError
         If a line is not whole, or does not belong where it is.
     """
-    lines, found = _Lines(raw), list[Held]()
+    lines, found = _Lines(raw), list[Matrix]()
     while lines.more:
         held, fields, wide = _header(lines.take(), lines.at)
-        found.append(replace(held, entries=_entries(held, lines, fields, wide=wide)))
+        held = replace(held, runs=tuple(_runs(held, lines, fields, wide=wide)))
+        found.append((held, fields.numbers))
     return found
 
 
@@ -101,30 +123,30 @@ def _header(line: bytes, number: int) -> tuple[Held, _Fields, bool]:
     return held, fields, height < 0 or height >= WIDEST
 
 
-def _entries(held: Held, lines: _Lines, fields: _Fields, *, wide: bool) -> int:
-    """Return the number of entries of a matrix, all its columns checked [-]."""
-    before, entries, strings = 0, 0, None
+def _runs(held: Held, lines: _Lines, fields: _Fields, *, wide: bool) -> list[Run]:
+    """Return the entries of a matrix, all its columns checked."""
+    before, runs, strings = 0, list[Run](), None
     while True:
         line = lines.take()
         column, row, count = (_whole(line[a : a + 8], lines.at) for a in (0, 8, 16))
         if not held.check_column(column, before):
             lines.take()
-            return entries
+            return runs
         if strings is not None and strings != (row == 0):
             raise ValueError(f"line {lines.at}: a column of another layout than those before it")
         before, strings = column, row == 0
         if row:
             if held.real:
                 held.check_rows(row, count, 0)
-            lines.pass_numbers(count, fields)
-            entries += count
+            runs.append(Run(column, row, count, lines.numbers(count, fields)))
         else:
-            entries += _strings(held, lines, fields, count, wide=wide)
+            runs += _strings(held, lines, fields, (column, count), wide=wide)
 
 
-def _strings(held: Held, lines: _Lines, fields: _Fields, words: int, *, wide: bool) -> int:
-    """Return the number of entries in the strings of a column [-]."""
-    end, entries, per_value = 0, 0, 1 if held.type % 2 else 2
+def _strings(held: Held, lines: _Lines, fields: _Fields, stated: tuple[int, int], *, wide: bool) -> list[Run]:
+    """Return the strings of a column, of which its line states number and words."""
+    column, words = stated
+    end, runs, per_value = 0, list[Run](), 1 if held.type % 2 else 2
     while words > 0:
         line = lines.take()
         if wide:
@@ -133,13 +155,15 @@ def _strings(held: Held, lines: _Lines, fields: _Fields, words: int, *, wide: bo
             packed = _whole(line, lines.at)
             size, row = (packed >> 16) - 1, packed & 0xFFFF
         words -= (2 if wide else 1) + size
+        count, odd = divmod(size, per_value)
+        if odd:
+            raise ValueError(f"line {lines.at}: {size} words in numbers of {per_value}")
         if held.real:
-            end = held.check_rows(row, size // per_value, end)
-        lines.pass_numbers(size // per_value, fields)
-        entries += size // per_value
+            end = held.check_rows(row, count, end)
+        runs.append(Run(column, row, count, lines.numbers(count, fields)))
     if words:
         raise ValueError(f"line {lines.at}: strings of {-words} words more than their column has")
-    return entries
+    return runs
 
 
 def _whole(text: bytes, number: int) -> int:

@@ -3,6 +3,15 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
+
+import numpy as np
+
+from acquisition.arrays import AnyArray
+from updating.models.imported.nastran.contents import Held
+
+Matrix = tuple[Held, Callable[[bytes], AnyArray]]
+"""A matrix in a file, and what takes its bytes to numbers."""
 
 
 class Records:
@@ -65,3 +74,13 @@ def whole_numbers(order: str, word: int, content: memoryview, count: int) -> tup
     if len(content) < count * word:
         raise ValueError(f"a record of {len(content)} bytes where {count} numbers are needed")
     return struct.unpack_from(f"{order}{count}{'i' if word == 4 else 'q'}", content)
+
+
+def size_of(held: Held, word: int) -> int:
+    """Return the bytes of an entry, in a file of words with 4 or 8 bytes."""
+    return (word if held.type % 2 else 8) * (1 if held.real else 2)
+
+
+def reals(order: str, size: int) -> Callable[[bytes], AnyArray]:
+    """Return what takes bytes to real numbers of 4 or 8 bytes each."""
+    return lambda raw: np.frombuffer(raw, dtype=f"{order}f{size}")
