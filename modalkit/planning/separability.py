@@ -17,7 +17,7 @@ SEEN = 3.0
 """Standard deviations from which on an effect is seen, or told from another."""
 
 SURE = 5.0
-"""Standard deviations from which on an effect is named alone, in 17 of 20 trials of the sample beam."""
+"""Standard deviations from which on an effect is expected to be named alone."""
 
 CLASS = 2.0
 """Effects less apart than this are one class to a test."""

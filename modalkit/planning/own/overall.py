@@ -10,9 +10,15 @@ import numpy as np
 from acquisition.quantities import severity
 from modalkit.planning.family import Family, factor, per_cent
 from modalkit.planning.own.sizes import BODY, HEAVIEST, Maker, in_g, in_unit
-from modalkit.planning.whole import CLEAR_LOAD, MOST_LOAD, NEAR
 from updating.effects.base import Effect, total_mass
 from updating.prediction.predict import Predictor
+
+CLEAR_LOAD, MOST_LOAD = 0.25, 0.7
+"""Axial load that is asked about, and the largest, of that at which the specimen buckles [-]."""
+
+NEAR = 0.3
+"""A near surface or bottom of a fluid over the shorter side [-]: of a slender beam the one takes an eighth of the added
+mass, the other adds a sixth; nearer than a tenth none is believed, beyond three none is felt."""
 
 BELIEVED_LOAD = 0.8
 """Largest pressure that the effect believes, of that at which the plate buckles [-]."""

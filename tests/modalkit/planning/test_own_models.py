@@ -20,9 +20,8 @@ from modalkit.output.schemas.plan import CheckedForecast
 from modalkit.output.whole import plain
 from modalkit.planning import Forecast, forecast
 from modalkit.planning.document import to_json
-from modalkit.planning.from_study import bench_of
 from modalkit.planning.note import brings, note, offered
-from modalkit.planning.own import OwnBench
+from modalkit.planning.own import OwnBench, bench_of
 from modalkit.planning.own.parts import PARTS as MAKERS
 from modalkit.planning.own.parts import where_supports_are
 from modalkit.planning.separability import SEEN, distances, nearest_in
