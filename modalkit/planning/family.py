@@ -39,7 +39,7 @@ class Family:
     places : (n,) array
         Where it may sit [m], or which of its forms it takes; empty where there is but one.
     separately : bool
-        Whether places are forms of which none is between two others.
+        Whether it can sit at its places alone, not between two of them.
     always : bool
         Whether it was there from the start, so that a baseline of the same specimen has it too.
     graded : bool

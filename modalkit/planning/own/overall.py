@@ -71,7 +71,7 @@ def _uniform(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     laws = tuple(unit)
     yield Family(
         effect.name, lambda q, law: {name: q * unit[name] * (name == laws[int(law)]) for name in laws}, 0.0, 20.0, 1.5,
-        "damping", lambda q: f"{severity(1 + q)} times that expected in the middle", np.arange(3.0), separately=True,
+        "damping", lambda q: f"{severity(1 + q)} times that expected in the middle", np.arange(3.0),
     )  # fmt: skip
 
 
@@ -117,7 +117,7 @@ def _fluid(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     known = around.fluid_density
     yield Family(
         effect.name, lambda q, form: {"fluid_density": q, **tanks[int(form)]}, 0.0, known or 2000.0, known or 998.0,
-        "a fluid denser than", in_unit("kg/m3"), np.arange(float(len(tanks))), separately=True,
+        "a fluid denser than", in_unit("kg/m3"), np.arange(float(len(tanks))),
     )  # fmt: skip
 
 

@@ -76,9 +76,7 @@ def _zones(
         return {"x": x, "y": y, "extent": along, "extent_y": across, **value(q)}
 
     places = np.arange(float(len(zones)))
-    return Family(
-        effect.name, values, *sizes, f"a zone's {what} off by more than", words, places, separately=True
-    )
+    return Family(effect.name, values, *sizes, f"a zone's {what} off by more than", words, places)
 
 
 def _heavy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
