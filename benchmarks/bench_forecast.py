@@ -21,7 +21,7 @@ from bench_structures import SCATTER, STRUCTURES, fits
 from hits import hit
 
 from modalkit.planning import DesignForecast
-from modalkit.planning.from_study import bench_of
+from modalkit.planning.own import bench_of
 from modalkit.planning.separability import NONE, SEEN, SURE, Distances, at_severity, distances
 from modalkit.study.read import read_study
 from modalkit.workflow.diagnosis import diagnose_studies

@@ -126,8 +126,8 @@ def plan(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Forecast what the test of a study tells apart."""
     from modalkit.planning import forecast
     from modalkit.planning.document import to_json
-    from modalkit.planning.from_study import bench_of
     from modalkit.planning.note import note
+    from modalkit.planning.own import bench_of
     from modalkit.study.read import read_study
 
     progress("reading the test")

@@ -1,26 +1,23 @@
-"""The command that plans a test of the user's own rig: what it tells apart, from when on, and what to change."""
+"""The command that plans a test: what it tells apart, from when on, and what to change."""
 
 from __future__ import annotations
 
 import math
-import tempfile
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
-from modalkit.planning import DesignForecast, Forecast, KnownTest, RigBench, forecast
+from modalkit.planning import DesignForecast, Forecast, forecast
 from modalkit.planning.document import family_of, statement, to_json
-from modalkit.planning.from_study import bench_of, known_test_of
-from modalkit.planning.note import brings, followed, note, offered
+from modalkit.planning.note import brings, note, offered
+from modalkit.planning.own import bench_of
 from modalkit.planning.separability import NONE, SEEN, SURE
-from modalkit.planning.trials import Check, check
-from modalkit.planning.writing import noise_for, write_case
+from modalkit.planning.trials import Check, check, first_to_follow
 from modalkit.study.read import Study, read_study
 
 WIDEST = 20
@@ -37,7 +34,7 @@ def plan_study(
     figures: Path | None = None,
     report: Path | None = None,
 ) -> None:
-    """Forecast what the test of a study tells apart, and check it by blind trials on that very rig.
+    """Forecast what the test of a study tells apart, and check it by blind trials on the study's own model.
 
     Parameters
     ----------
@@ -76,22 +73,11 @@ def _report(study: Study, found: Forecast, checked: Check | None) -> str:
 
 
 def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
-    """Run trials whose channels are as noisy as makes the constants as uncertain as told."""
-    bench, noise = found.bench, None
-    if isinstance(bench, RigBench) and bench.known_test.shapes:
-        with working("matching the noise"):
-            noise = _noise(bench.known_test)
-    runs = (2 if followed(found) and bench.follows else 1) * trials
+    runs = (1 if first_to_follow(found) is None else 2) * trials
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=progress) as bar:
         task = bar.add_task("trials", total=runs)
-        return check(found, trials, seed, noise=noise, workers=workers, progress=lambda: bar.advance(task))
-
-
-def _noise(known_test: KnownTest) -> float:
-    with tempfile.TemporaryDirectory(prefix="test-") as folder:
-        trial = known_test_of(read_study(write_case(None, known_test, Path(folder), seed=[0])))
-    return noise_for(float(np.median(known_test.shape)), float(np.median(trial.shape)), known_test.setup)
+        return check(found, trials, seed, workers=workers, progress=lambda: bar.advance(task))
 
 
 def _figures(found: Forecast) -> dict[str, Any]:

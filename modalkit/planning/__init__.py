@@ -2,7 +2,5 @@
 
 from modalkit.planning.bench import Bench
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast, forecast
-from modalkit.planning.known import KnownTest, by_default
-from modalkit.planning.rig import RigBench
 
-__all__ = ["Advice", "Bench", "DesignForecast", "Forecast", "KnownTest", "RigBench", "by_default", "forecast"]
+__all__ = ["Advice", "Bench", "DesignForecast", "Forecast", "forecast"]

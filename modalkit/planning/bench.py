@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Protocol
 
 from acquisition.arrays import FloatArray, IntArray
@@ -15,9 +14,6 @@ from modalkit.planning.family import Family
 if TYPE_CHECKING:
     from modalkit.blind.answer import Answer
     from modalkit.planning.cases import Case
-
-Attempt = Callable[["Case", Change | None, list[int]], "Answer"]
-"""Hides a case in the structure, tests it by a seed as it is or with a change followed, and has it diagnosed."""
 
 
 class Bench(Protocol):
@@ -59,20 +55,11 @@ class Bench(Protocol):
     def changes(self, design: Design, worth: Gain) -> Iterator[Change]:
         """Give all changes of the test that are worth a look."""
 
-    @property
-    def follows(self) -> bool:
-        """Whether a trial can follow a change of the test."""
+    def follows(self, change: Change) -> bool:
+        """Tell whether a trial can follow a change of the test."""
 
     def right(self, case: Case) -> frozenset[str]:
         """Return the names that are right answers to a case."""
 
-    def attempts(self, *, noise: float | None, workers: int) -> AbstractContextManager[Attempt]:
-        """Give what makes trials.
-
-        Parameters
-        ----------
-        noise : float, optional
-            Noise of the channels relative to their peak; left out, the test's own [-].
-        workers : int
-            Diagnoses at a time [-].
-        """
+    def attempt(self, case: Case, change: Change | None, seed: list[int]) -> Answer:
+        """Hide a case in the structure, test it by a seed as it is or with a change followed, and have it diagnosed."""

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modalkit.planning.family import Family
+from modalkit.planning.family import Family, Values
 from modalkit.planning.forecast import Advice, DesignForecast
 from modalkit.planning.separability import NONE, SURE, Distances, at_severity, crossing
-from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
-from modalkit.simulator.setup import Setup
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +42,6 @@ class Case:
     def values(self) -> Values:
         """Parameters under the contract's names [SI]."""
         return dict(self.family.values(self.q, self.place))
-
-    def accepted(self, setup: Setup) -> frozenset[str]:
-        """Return names that are right answers."""
-        values = self.values
-        return frozenset((self.family.name, *HIDDEN_EFFECTS[self.family.name].equals(setup, values)))
 
     @property
     def statement(self) -> str:

@@ -13,7 +13,7 @@ from scipy.interpolate import Akima1DInterpolator, make_interp_spline
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from modalkit.planning.family import Family
 
-_BETWEEN, _DENSER = 5, 3
+_BETWEEN, _DENSER, _APART = 5, 3, 4
 _CUBIC = 3
 _LINEAR = 10.0
 """Severities of so many times the smallest are where the scale turns from linear to logarithmic [-]."""
@@ -76,26 +76,20 @@ class Curve:
         return _finer(self.family.grid, _BETWEEN if self.family.graded else 1)
 
     @cached_property
-    def places(self) -> FloatArray:
-        """Fine places, (n_fine_places,) [m]."""
-        sites = self.family.sites
-        return _finer(sites, _BETWEEN) if self._spread else sites
-
-    @property
-    def _spread(self) -> bool:
-        return len(self.family.sites) > _CUBIC and not self.family.separately
-
-    @cached_property
     def cloud(self) -> FloatArray:
-        """Interpolated data, (n_fine_places, n_fine, n_data) [-]."""
+        """Interpolated data, (n_fine_places, n_fine, n_data) [-].
+
+        An effect between two places changes the data nearly as it would in parts at both.
+        """
         data: Any = self.data
         even = partial(_even, family=self.family)
         if self.dense is not None:
             data = _between(self.dense.severities, self.dense.data, self.severities, self.family)
         elif self.family.graded:
             data = make_interp_spline(even(self.family.grid), data, k=_CUBIC, axis=1)(even(self.severities))
-        if self._spread:
-            data = make_interp_spline(self.family.sites, data, k=_CUBIC, axis=0)(self.places)
+        if len(data) > 1 and not self.family.separately:
+            rank = np.arange(float(len(data)))
+            data = make_interp_spline(rank, data, k=1, axis=0)(_finer(rank, _APART))
         cloud: FloatArray = data
         return cloud
 

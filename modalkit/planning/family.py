@@ -10,7 +10,6 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.quantities import severity
-from modalkit.simulator.setup import Setup
 
 _FINEST = 1e-3
 _RATIO = 1.8
@@ -40,7 +39,7 @@ class Family:
     places : (n,) array
         Where it may sit [m], or which of its forms it takes; empty where there is but one.
     separately : bool
-        Whether places are forms of which none is between two others.
+        Whether it can sit at its places alone, not between two of them.
     always : bool
         Whether it was there from the start, so that a baseline of the same specimen has it too.
     graded : bool
@@ -102,10 +101,6 @@ class Family:
 def _steps(end: float, finest: float) -> FloatArray:
     count = int(np.ceil(np.log(1 / finest) / np.log(_RATIO)))
     return np.asarray(end * _RATIO ** -np.arange(count, -1.0, -1.0))
-
-
-Maker = Callable[[Setup], Family | None]
-"""Makes a family for a setup; None where the effect cannot be."""
 
 
 def per_cent(q: float) -> str:

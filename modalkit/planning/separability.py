@@ -11,13 +11,14 @@ from acquisition.arrays import FloatArray, IntArray
 from modalkit.planning.bench import Bench
 from modalkit.planning.curves import Curve
 from modalkit.planning.design import Design
+from modalkit.planning.surface import Surface
 
 NONE = "none"
 SEEN = 3.0
 """Standard deviations from which on an effect is seen, or told from another."""
 
 SURE = 5.0
-"""Standard deviations from which on an effect is named alone, in 17 of 20 trials of the sample beam."""
+"""Standard deviations from which on an effect is expected to be named alone."""
 
 CLASS = 2.0
 """Effects less apart than this are one class to a test."""
@@ -170,11 +171,11 @@ def distances(
     """
     have, white = bench.columns(design), bench.whitener(design)
     chosen = [_chosen(len(curve.data)) for curve in curves]
-    targets = [curve.data[i][..., have] @ white.T for curve, i in zip(curves, chosen, strict=True)]
+    targets = [curve.data[i][..., have] for curve, i in zip(curves, chosen, strict=True)]
     flat = np.concatenate([one.reshape(-1, one.shape[-1]) for one in targets])
-    nothing = np.linalg.norm(flat, axis=1)
+    nothing = np.linalg.norm(flat @ white.T, axis=1)
     reached = [
-        np.minimum(_surface(curve, have, white, fine=fine).distance(flat), nothing) for curve in curves
+        np.minimum(_surface(curve, have, fine=fine).distance(flat, white), nothing) for curve in curves
     ]
     ends = np.cumsum([0, *(np.prod(one.shape[:2]) for one in targets)])
     return tuple(
@@ -202,84 +203,8 @@ def _against(curves: Sequence[Curve], own: int, chosen: IntArray, rows: Sequence
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Surface:
-    """All that an effect can do, in whitened data.
-
-    Parameters
-    ----------
-    cloud : (n_places, n_severities, n_data) array
-        Points of the surface [standard deviations].
-    doubt : (n_places, n_severities, n_data) array or None
-        Variance by how far its idealisation may be off there [standard deviations squared].
-    """
-
-    cloud: FloatArray
-    doubt: FloatArray | None
-
-    def distance(self, targets: FloatArray) -> FloatArray:
-        """Return the distance of whitened targets (n, n_data), the surface's own doubt counted in, (n,) [-].
-
-        What the doubts of two data have in common once these are whitened is left aside.
-        """
-        left, best = nearest_in(targets, self.cloud)
-        if self.doubt is None:
-            return np.asarray(np.linalg.norm(left, axis=1))
-        doubt = self.doubt.reshape(-1, self.doubt.shape[-1])[best]
-        return np.asarray(np.sqrt(np.sum(left**2 / (1 + doubt), axis=1)))
-
-
-def _surface(curve: Curve, have: IntArray, white: FloatArray, *, fine: bool) -> _Surface:
+def _surface(curve: Curve, have: IntArray, *, fine: bool) -> Surface:
     coarse = curve.data if curve.dense is None else curve.dense.data
-    bare = (curve.cloud if fine else coarse)[..., have]
-    doubt = None
-    if curve.fidelity or curve.slack is not None:
-        slack = 0.0 if curve.slack is None else curve.slack[have]
-        doubt = ((curve.fidelity * bare) ** 2 + slack**2) @ (white**2).T
-    return _Surface(bare @ white.T, doubt)
-
-
-def nearest_in(targets: FloatArray, cloud: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return what lies between each target and a surface given by a fine grid of points.
-
-    The nearest point is sought over the whole grid, then moved within its cell along the surface's tangents.
-
-    Parameters
-    ----------
-    targets : (n, m) array
-        Points.
-    cloud : (n_places, n_severities, m) array
-        The surface.
-
-    Returns
-    -------
-    left : (n, m) array
-        From the surface to each target.
-    best : (n,) int array
-        The point of the grid that is nearest, places and severities in a row.
-    """
-    points = cloud.reshape(-1, cloud.shape[-1])
-    square = np.einsum("ij,ij->i", points, points) - 2 * targets @ points.T
-    best = np.argmin(square, axis=1)
-    left = targets - points[best]
-    place, severity = np.unravel_index(best, cloud.shape[:2])
-    for index, axis in ((severity, 1), (place, 0)):
-        left = _moved(left, cloud, (place, severity), index, axis)
-    return left, best
-
-
-def _moved(
-    left: FloatArray, cloud: FloatArray, at: tuple[IntArray, IntArray], index: IntArray, axis: int
-) -> FloatArray:
-    """Move along one direction of the grid, to the side that brings the target nearer, by no more than a cell."""
-    best = left
-    for step in (-1, 1):
-        other = np.clip(index + step, 0, cloud.shape[axis] - 1)
-        moved = (at[0], other) if axis == 1 else (other, at[1])
-        tangent = cloud[moved] - cloud[at]
-        size = np.einsum("ij,ij->i", tangent, tangent)
-        share = np.einsum("ij,ij->i", left, tangent) / np.maximum(size, 1e-300)
-        tried = left - np.clip(share, 0.0, 1.0)[:, None] * tangent
-        nearer = np.linalg.norm(tried, axis=1) < np.linalg.norm(best, axis=1)
-        best = np.where(nearer[:, None], tried, best)
-    return best
+    cloud = (curve.cloud if fine else coarse)[..., have]
+    slack = None if curve.slack is None else curve.slack[have]
+    return Surface(cloud, curve.fidelity, slack, joined=not curve.family.separately)

@@ -1,4 +1,4 @@
-"""Check a forecast: real blind trials on the user's own rig, as it is and once the advice is followed."""
+"""Check a forecast: blind trials of the test on the study's own model, as it is and once the advice is followed."""
 
 from __future__ import annotations
 
@@ -147,12 +147,16 @@ def _counted(tried: Sequence[Tried]) -> str:
     return f"named alone {', '.join(words)}; in the class answered {kept} of {len(tried)}"
 
 
+def first_to_follow(found: Forecast) -> Advice | None:
+    """Return the first of the advice that gains something and that a trial can follow."""
+    return next((one for one in found.advice if one.worth > 0 and found.bench.follows(one.change)), None)
+
+
 def check(
     found: Forecast,
     count: int,
     seed: int,
     *,
-    noise: float | None = None,
     workers: int = 1,
     progress: Callable[[], None] | None = None,
 ) -> Check:
@@ -164,8 +168,6 @@ def check(
         What is to be checked; the first of its advice that can be followed is followed.
     count, seed : int
         Cases, each tried as the test is and with the advice followed, and the seed of all draws [-].
-    noise : float, optional
-        Noise of the channels relative to their peak [-].
     workers : int
         Diagnoses at a time [-].
     progress : callable, optional
@@ -174,20 +176,20 @@ def check(
     Returns
     -------
     Check
-        The process that diagnoses is given the study and the raw hits, and nothing else.
+        The diagnosis is given the study and the raw hits, and nothing else.
     """
     bench = found.bench
-    advice = next((one for one in found.advice if one.worth > 0), None) if bench.follows else None
+    advice = first_to_follow(found)
     cases = choose(found.now, advice, count, np.random.default_rng([seed, 0]))
     wanted = [(case, False) for case in cases] + [(case, True) for case in cases if advice is not None]
-    with bench.attempts(noise=noise, workers=workers) as attempt, ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(workers) as pool:
 
         def one(job: tuple[int, tuple[Case, bool]]) -> Tried:
             index, (case, follows) = job
             change = advice.change if follows and advice is not None else None
             right, answer, failure = bench.right(case), None, ""
             try:  # the same draws with and without the advice
-                answer = attempt(case, change, [seed, 1 + index % len(cases)])
+                answer = bench.attempt(case, change, [seed, 1 + index % len(cases)])
             except (ModalkitError, OSError) as error:
                 failure = str(error)
             if progress is not None:

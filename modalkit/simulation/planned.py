@@ -53,7 +53,7 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
         What the user says.
     """
     axes, notes = study.axes(study.test), []
-    planned = planned_points(study, spec) if spec.kind != "beam" and measured is None else None
+    planned = planned_points(study, spec) if measured is None else None
     if planned is not None:
         points, nodes, directions = planned.points, planned.nodes, planned.directions
         notes.append(f"the study has no hits: the hammer goes to the {len(planned.hit)} points that it plans")
@@ -72,7 +72,7 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     inside = (modes.frequency > band[0]) & (modes.frequency < band[1])
     stated = None if planned is None else planned.sensor
     sensor = _sensor(spec, points, modes.shapes[:, inside]) if stated is None else stated
-    names, geometry = _named(points, nodes, directions, axes)
+    names, geometry = named(points, nodes, directions, axes)
     notes.append(f"the sensor sits at {names[sensor]}")
     slowest = float(np.min((modes.damping * 2 * np.pi * modes.frequency)[inside], initial=np.inf))
     plan = _usual_plan(band, slowest + study.test.exponential_window, options)
@@ -149,7 +149,7 @@ def _sensor(spec: Spec, points: FloatArray, shapes: FloatArray) -> int:
     return int(np.argmax((np.abs(shapes) / np.abs(shapes).max(axis=0)).min(axis=1)))
 
 
-def _named(
+def named(
     points: FloatArray, nodes: tuple[int, ...], directions: FloatArray | None, axes: Axes
 ) -> tuple[tuple[Dof, ...], Geometry]:
     """Return degrees of freedom that point the model's way, and their nodes in test coordinates."""

@@ -61,7 +61,7 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
     study : Study
         The study.
     spec : Spec
-        Its model: a plate, or imported matrices.
+        Its model.
 
     Raises
     ------
@@ -100,11 +100,17 @@ def _placed(stated: list[PlainPoint], spec: Spec) -> Placed:
         if isinstance(one, str):
             dof = Dof.of(one)
             where = _of_node(dof.node, spec)
+        elif isinstance(one, tuple) and spec.kind == "beam":
+            raise StudyError(f"{list(one[:-1])} is no place along a beam; {_how(spec)}")
         elif isinstance(one, tuple):
             *place_of, way = one
             where = np.array([*place_of, 0.0][:3])
             number = known.setdefault(tuple(place_of), max(numbers, default=0) + len(known) + 1)
             dof = Dof.of(f"{number}{way}")
+        elif spec.kind == "beam":
+            if not 0 <= one <= spec.length:
+                raise StudyError(f"{one:g} m is off the beam, which reaches from 0 to {spec.length:g} m")
+            dof, where = Dof.of(f"{known.setdefault((one,), len(known) + 1)}+z"), np.array([one, 0.0, 0.0])
         else:
             raise StudyError(f"{one:g} is a place along a beam; {_how(spec)}")
         dofs.append(dof)
@@ -128,7 +134,7 @@ def _of_node(node: int, spec: Spec) -> FloatArray:
 def _how(spec: Spec) -> str:
     """Return how a point is written on a model."""
     if spec.imported is None:
-        return "write [x, y] in [m]"
+        return "write x in [m]" if spec.kind == "beam" else "write [x, y] in [m]"
     return 'write a node and its direction as "12+Z", or [x, y, z, "+z"] in [m]'
 
 

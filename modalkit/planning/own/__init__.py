@@ -1,6 +1,6 @@
-"""Forecasts on a study's own model: plates, matrices and decks, by the prediction that the diagnosis has."""
+"""Forecasts on a study's own model, by the prediction that the diagnosis has."""
 
 from modalkit.planning.own.bench import OwnBench
-from modalkit.planning.own.from_study import own_bench
+from modalkit.planning.own.from_study import bench_of
 
-__all__ = ["OwnBench", "own_bench"]
+__all__ = ["OwnBench", "bench_of"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,7 +11,6 @@ import scipy.linalg
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from modalkit.blind.answer import Answer
-from modalkit.planning.bench import Attempt
 from modalkit.planning.cases import Case
 from modalkit.planning.changes import Change, Gain
 from modalkit.planning.curves import Curve, refined, solve_curve
@@ -21,8 +19,9 @@ from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.family import Family
 from modalkit.planning.own.changes import own_changes
 from modalkit.planning.own.families import families_of
+from modalkit.planning.own.following import followed
 from modalkit.planning.own.layout import Layout
-from modalkit.planning.own.trials import REMOUNTED, diagnosed
+from modalkit.planning.own.trials import REMOUNTED, Trial, drawn_chain
 from modalkit.planning.separability import EQUAL
 from modalkit.simulation.simulate import prepare
 from modalkit.study.read import Study
@@ -89,6 +88,8 @@ class OwnBench:
             obstacle = effect.why_not(self.problem.predictor)
             if obstacle is not None:
                 found[name] = str(obstacle)
+            elif name in self.without:
+                found[name] = "the study rules it out"
             elif name not in asked:
                 found[name] = NOT_FORECAST.get(name, NO_SEVERITY)
         return found
@@ -191,18 +192,21 @@ class OwnBench:
         above = float(higher[0]) if len(higher) else None
         return own_changes(design, self.layout, self.problem.names, above, self.hits, worth)
 
-    follows = False
+    def follows(self, change: Change) -> bool:
+        """Tell whether a trial can follow a change: shapes without a hammer have no other places."""
+        return change.design.stations == self.design.stations or not self.layout.blank.bare
 
     def right(self, case: Case) -> frozenset[str]:
         """Return the names that are right answers to a case."""
         return frozenset((case.family.cause, *(b for a, b in EQUAL if a == case.family.cause)))
 
-    @contextmanager
-    def attempts(self, *, noise: float | None, workers: int) -> Iterator[Attempt]:
-        """Give what makes trials: the study's model is hit as its test was, or as is planned."""
-        ready = prepare(self.study, replace(REMOUNTED, noise=noise))
+    @cached_property
+    def trial(self) -> Trial:
+        """The test as it is, to be made on the study's model: it is hit as it was, or as is planned."""
+        ready = prepare(self.study, REMOUNTED)
+        return Trial(self.study, replace(ready, study=drawn_chain(self.study)), self.design, self.problem)
 
-        def attempt(case: Case, _: Change | None, seed: list[int]) -> Answer:
-            return diagnosed(self.study, ready, case, seed)
-
-        yield attempt
+    def attempt(self, case: Case, change: Change | None, seed: list[int]) -> Answer:
+        """Make a trial of the test as it is, or with a change followed."""
+        trial = self.trial if change is None else followed(self.trial, self.layout, change.design)
+        return trial.diagnosed(case, seed)

@@ -12,7 +12,10 @@ from updating.models import Spec
 from updating.prediction.predict import Predictor
 
 SPREAD = 12
-"""So many places are tried: as many as the rig's forecast tries along a beam [-]."""
+"""So many places are tried [-]."""
+
+ALONG = 41
+"""Places along a beam among which these are chosen [-]."""
 
 CLOSE = 0.02
 """Nearer to a point of the test than this share of the structure, a place is no other one [-]."""
@@ -52,7 +55,7 @@ def candidates(predictor: Predictor, ranks: IntArray, points: FloatArray) -> tup
         Points of the test [m].
     """
     spec = predictor.spec
-    places = _plate(spec) if spec.imported is None else spec.imported.places.at
+    places = _grid(spec) if spec.imported is None else spec.imported.places.at
     vectors = predictor.predict(count=int(ranks.max()) + 1).vectors[:, ranks]
     moved = _moved(predictor, places, vectors)
     able = np.flatnonzero(moved.max(axis=1) > CLOSE * moved.max())
@@ -63,8 +66,10 @@ def candidates(predictor: Predictor, ranks: IntArray, points: FloatArray) -> tup
     )
 
 
-def _plate(spec: Spec) -> FloatArray:
-    """Return a grid over a plate, off its edges by a twentieth (n, 2) [m]."""
+def _grid(spec: Spec) -> FloatArray:
+    """Return places along a beam (n, 1) or over a plate, off its edges by a twentieth, (n, 2) [m]."""
+    if spec.kind == "beam":
+        return spec.length * np.linspace(0.0, 1.0, ALONG)[:, None]
     x, y = np.meshgrid(np.linspace(0.05, 0.95, 9), np.linspace(0.05, 0.95, 6), indexing="ij")
     return np.stack([spec.length * x.ravel(), spec.width * y.ravel()], axis=1)
 
@@ -101,9 +106,9 @@ def _spread(places: FloatArray, points: FloatArray, spec: Spec) -> list[int]:
 def _name(predictor: Predictor, place: FloatArray, axis: int) -> str:
     """Return the node, where it is and in which region, and along what it is hit."""
     spec = predictor.spec
-    at = written(place.tolist(), plate=True)
+    at = written(place.tolist(), plate=spec.kind != "beam")
     if spec.imported is None:
-        return f"({at})"
+        return at if spec.kind == "beam" else f"({at})"
     places = spec.imported.places
     node = int(places.node[np.linalg.norm(places.at - place, axis=1).argmin()])
     region = _region(spec, place)

@@ -9,10 +9,9 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from modalkit.planning.design import Design
-from modalkit.planning.known import by_default
 from modalkit.planning.own.bench import OwnBench
 from modalkit.planning.own.candidates import candidates
-from modalkit.planning.own.layout import Known, Layout, imagined, layout_of
+from modalkit.planning.own.layout import Known, Layout, by_default, imagined, layout_of
 from modalkit.planning.own.parts import where_supports_are
 from modalkit.planning.own.tracked import Tracked
 from modalkit.simulation.planned import spaced
@@ -37,6 +36,9 @@ FIRST_MODES, MANY = 5, 40
 FAINT = 0.02
 """A mode moves no point if it moves all by less than this share of what the middle mode does [-]."""
 
+ALONG = 8
+"""Points along a beam where nothing says which are hit."""
+
 HITS = 5
 """Hits at each point where nothing says how many [-]."""
 
@@ -59,7 +61,7 @@ class _Test:
         return self.predictor.measured
 
 
-def own_bench(study: Study) -> OwnBench:
+def bench_of(study: Study) -> OwnBench:
     """Return a study's own model and its test as the forecast takes them.
 
     Parameters
@@ -209,7 +211,7 @@ def _spaced(study: Study, spec: Spec) -> PlannedPoints:
             f"{study.path}: nothing says where the structure will be hit; give [test] points, a node and its direction "
             'as "12+Z" or [x, y, z, "+z"] each, or data'
         )
-    points = spaced(spec, None)
+    points = spaced(spec, ALONG if spec.kind == "beam" else None)
     return PlannedPoints(points, tuple(range(1, len(points) + 1)), None, tuple(range(len(points))), None)
 
 

@@ -11,6 +11,10 @@ from modalkit.planning.own.candidates import Spot
 from updating import Measured
 from updating.prediction.predict import Predictor
 
+FREQUENCY_SIGMA, DAMPING_SIGMA, SHAPE_SIGMA = 2e-4, 0.05, 0.02
+"""Relative standard deviations of identified frequencies and damping ratios, and that of modal constants over each
+mode's largest, where no data say [-]."""
+
 REPEATED = 4
 """Modes that are predicted beyond those needed, so that each finds its partner where some change places [-]."""
 
@@ -121,6 +125,11 @@ class Known:
         """Return it for so many modes, what is above the band taken to be known as the mode below it."""
         each = (self.frequency, self.damping, self.shape)
         return Known(*(np.append(v, np.full(count - len(v), v[-1])) for v in each))
+
+
+def by_default(count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the standard deviations of frequencies, damping and constants of so many modes where no data say [-]."""
+    return np.full(count, FREQUENCY_SIGMA), np.full(count, DAMPING_SIGMA), np.full(count, SHAPE_SIGMA)
 
 
 def imagined(layout: Layout, predictor: Predictor, ranks: IntArray, known: Known) -> Measured:

@@ -10,9 +10,15 @@ import numpy as np
 from acquisition.quantities import severity
 from modalkit.planning.family import Family, factor, per_cent
 from modalkit.planning.own.sizes import BODY, HEAVIEST, Maker, in_g, in_unit
-from modalkit.planning.whole import CLEAR_LOAD, MOST_LOAD, NEAR
 from updating.effects.base import Effect, total_mass
 from updating.prediction.predict import Predictor
+
+CLEAR_LOAD, MOST_LOAD = 0.25, 0.7
+"""Axial load that is asked about, and the largest, of that at which the specimen buckles [-]."""
+
+NEAR = 0.3
+"""A near surface or bottom of a fluid over the shorter side [-]: of a slender beam the one takes an eighth of the added
+mass, the other adds a sixth; nearer than a tenth none is believed, beyond three none is felt."""
 
 BELIEVED_LOAD = 0.8
 """Largest pressure that the effect believes, of that at which the plate buckles [-]."""
@@ -65,7 +71,7 @@ def _uniform(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     laws = tuple(unit)
     yield Family(
         effect.name, lambda q, law: {name: q * unit[name] * (name == laws[int(law)]) for name in laws}, 0.0, 20.0, 1.5,
-        "damping", lambda q: f"{severity(1 + q)} times that expected in the middle", np.arange(3.0), separately=True,
+        "damping", lambda q: f"{severity(1 + q)} times that expected in the middle", np.arange(3.0),
     )  # fmt: skip
 
 
@@ -111,7 +117,7 @@ def _fluid(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     known = around.fluid_density
     yield Family(
         effect.name, lambda q, form: {"fluid_density": q, **tanks[int(form)]}, 0.0, known or 2000.0, known or 998.0,
-        "a fluid denser than", in_unit("kg/m3"), np.arange(float(len(tanks))), separately=True,
+        "a fluid denser than", in_unit("kg/m3"), np.arange(float(len(tanks))),
     )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ SOFTEST = float(np.log(1e3))
 """Softest joint, stiffest of the other sign: as the diagnosis has them [-]."""
 
 SOFT_SUPPORT = 20.0
-"""A support that is asked about, over the softest that is believed [-]: as the clamps of the rig's beams."""
+"""A support that is asked about, over the softest that is believed [-]."""
 
 LOSSY, LAYER = 0.5, 0.1
 """Largest loss factor of a layer, and the one that is asked about [-]."""
@@ -76,9 +76,7 @@ def _zones(
         return {"x": x, "y": y, "extent": along, "extent_y": across, **value(q)}
 
     places = np.arange(float(len(zones)))
-    return Family(
-        effect.name, values, *sizes, f"a zone's {what} off by more than", words, places, separately=True
-    )
+    return Family(effect.name, values, *sizes, f"a zone's {what} off by more than", words, places)
 
 
 def _heavy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
@@ -174,8 +172,13 @@ def _given(support: Support | None, axis: int) -> Callable[[float, float], Value
 
 
 def _layers(effect: Effect, predictor: Predictor) -> Iterator[Family]:
-    """A layer on each region."""
+    """A layer on each region; on a beam or a plate, all its zones as places of one effect."""
     nothing = {"alpha": 0.0, "beta": 0.0, "mass": 0.0, "stiffness": 0.0}
+    if predictor.spec.imported is None:
+        yield _zones(
+            effect, predictor, lambda q: {**nothing, "loss_factor": q}, (0.0, LOSSY, LAYER), "loss factor", severity
+        )  # fmt: skip
+        return
     for name in stiff_regions(predictor):
         yield Family(
             f"{effect.name} on {name}", _layer(name, nothing), 0.0, LOSSY, LAYER,

@@ -16,7 +16,7 @@ FAINTEST = 1e-5
 """Smallest severity that is solved where it ranges over many decades, of the largest [-]."""
 
 HEAVIEST, BODY = 0.3, 0.05
-"""Largest body and the one that is asked about, of the structure's mass [-]: as on the rig's beams."""
+"""Largest body and the one that is asked about, of the structure's mass [-]."""
 
 
 def in_unit(unit: str) -> Callable[[float], str]:

@@ -33,7 +33,7 @@ def _body(cause: str, name: str, places: list[Values], more: Values, mass: float
         f"{cause} at {name}" if name else cause,
         lambda q, i: {**places[int(i)], **more, "mass": q}, 0.0, HEAVIEST * mass, BODY * mass,
         f"a body at {name} heavier than" if name else "a body at a point heavier than", in_g,
-        np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), separately=True, effect=cause, at=name,
+        np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), effect=cause, at=name,
     )  # fmt: skip
 
 
@@ -55,7 +55,7 @@ def _springs(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterat
         return Family(
             name, lambda q, i: {**places[int(i)], **still, "stiffness": q}, 0.0, STIFFEST * own, SPRING * own,
             f"a spring to the ground at {at or 'a point'} stiffer than", in_unit("N/m"),
-            np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), separately=True, effect=effect.name,
+            np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), effect=effect.name,
             at=at, finest=FAINTEST,
         )  # fmt: skip
 

@@ -20,12 +20,12 @@ from modalkit.output.schemas.plan import CheckedForecast
 from modalkit.output.whole import plain
 from modalkit.planning import Forecast, forecast
 from modalkit.planning.document import to_json
-from modalkit.planning.from_study import bench_of
 from modalkit.planning.note import brings, note, offered
-from modalkit.planning.own import OwnBench
+from modalkit.planning.own import OwnBench, bench_of
 from modalkit.planning.own.parts import PARTS as MAKERS
 from modalkit.planning.own.parts import where_supports_are
-from modalkit.planning.separability import SEEN, distances, nearest_in
+from modalkit.planning.separability import SEEN, distances
+from modalkit.planning.surface import Surface
 from modalkit.planning.trials import check
 from modalkit.study.read import read_study
 from updating.effects.base import Parameter
@@ -209,9 +209,9 @@ def test_a_curve_is_met_between_the_severities_that_were_solved(chained: Forecas
         if len(curve.family.places):
             continue
         for share in (0.13, 0.37, 0.73):
-            target = own.change(curve.family, share * curve.family.clear, 0.0)[have] @ white.T
-            left, _ = nearest_in(target[None], curve.cloud[..., have] @ white.T)
-            assert np.linalg.norm(left) < max(1.0, curve.fidelity * np.linalg.norm(target)), curve.family.name
+            target = own.change(curve.family, share * curve.family.clear, 0.0)[have]
+            (left,) = Surface(curve.cloud[..., have]).distance(target[None], white)
+            assert left < max(1.0, curve.fidelity * np.linalg.norm(white @ target)), curve.family.name
 
 
 def test_modes_are_known_again_when_all_frequencies_move(tmp_path: Path) -> None:

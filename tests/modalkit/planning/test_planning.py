@@ -9,92 +9,86 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conforming import departures
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from modalkit.output.schemas import PlanDocument
-from modalkit.planning import KnownTest, RigBench, by_default, forecast
-from modalkit.planning.curves import Curve, solve_curve
-from modalkit.planning.design import Design, columns, present, whitener
+from modalkit.planning import forecast
+from modalkit.planning.curves import Curve
+from modalkit.planning.design import Design
 from modalkit.planning.document import to_json
-from modalkit.planning.effects import families
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import DesignForecast, Forecast
-from modalkit.planning.from_study import known_test_of
-from modalkit.planning.responses import Stations, hidden
-from modalkit.planning.separability import EQUAL, SEEN, distances, nearest_in
-from modalkit.simulator.scene import nominal_scene
-from modalkit.simulator.setup import Setup, Tolerances
+from modalkit.planning.own import OwnBench, bench_of
+from modalkit.planning.own.following import followed
+from modalkit.planning.separability import EQUAL, SEEN, distances
+from modalkit.planning.surface import Surface
+from modalkit.simulation.setup import SAMPLING
 from modalkit.study.read import read_study
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 
-SETUP = Setup(
-    kind="beam",
-    title="Beam",
-    length=0.4,
-    width=0.03,
-    thickness=0.005,
-    E=210e9,
-    density=7850.0,
-    poisson=0.3,
-    clamped=("x0",),
-    theory="timoshenko",
-    elements=(20,),
-    tolerances=Tolerances(),
-    alpha=1.0,
-    beta=1e-6,
-    points=((0.08,), (0.16,), (0.24,), (0.32,), (0.4,)),
-    sensor=4,
-    drive=False,
-    sensor_sign=1,
-    sensor_mass=0.0,
-    modes=3,
-    band=(5.0, 500.0),
-    hits=5,
-    peak=100.0,
-    level_scatter=0.3,
-    bad_hits=0.0,
-    noise=1e-3,
-    noise_slope=0.0,
-    bits=24,
-    calibration=0.02,
-    repeatability=0.0005,
-    position_sigma=0.001,
-    window=0.0,
-    baseline=False,
-    environment=None,
-)
+STUDY = """
+[test]
+{test}
+[model]
+type = "beam"
+length = 0.4
+width = 0.03
+thickness = 0.005
+clamped = ["x0"]
+theory = "timoshenko"
+[model.material]
+E = 210e9
+density = 7850.0
+[model.damping]
+alpha = 1.0
+beta = 1e-6
+"""
 FEW = ("E", "density", "thickness", "section_scale", "clamp_rotation", "calibration_gain", "sensor_mass")
+POINTS = "points = [0.08, 0.16, 0.24, 0.32]\nsensor = 0.4\nband = [5.0, 500.0]"
+TOLERANCES = {"E": 0.01, "density": 0.003, "thickness": 0.005, "length": 0.002}
 
 
-def known_test(setup: Setup = SETUP, **changes: object) -> KnownTest:
-    return replace(KnownTest(setup, *by_default(setup.modes)), **changes)  # type: ignore[arg-type]
+def planned(folder: Path, test: str = POINTS, more: str = "") -> OwnBench:
+    path = folder / "study.toml"
+    path.write_text(STUDY.format(test=test) + more)
+    return bench_of(read_study(path))
 
 
 @pytest.fixture(scope="module")
-def stations() -> Stations:
-    return Stations(SETUP)
+def bench(tmp_path_factory: pytest.TempPathFactory) -> OwnBench:
+    return planned(tmp_path_factory.mktemp("beam"))
 
 
 @pytest.fixture(scope="module")
-def curves(stations: Stations) -> tuple[Curve, ...]:
-    return tuple(solve_curve(f, stations.change) for f in families(known_test()) if f.name in FEW)
+def curves(bench: OwnBench) -> tuple[Curve, ...]:
+    return tuple(bench.solve(f) for f in bench.families if f.name in FEW)
 
 
 @pytest.fixture(scope="module")
 def sample() -> Forecast:
-    return forecast(RigBench(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml"))))
+    return forecast(bench_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
 
 
-def forecast_by_curves(curves: tuple[Curve, ...], design: Design, known: KnownTest) -> DesignForecast:
-    return DesignForecast(design, distances(curves, design, RigBench(known)))
+def frequencies_alone(bench: OwnBench) -> Design:
+    return replace(bench.design, shapes=False, damping_known=False)
+
+
+def common_variance() -> float:
+    """Of the frequencies of a cantilever, which go with sqrt(E / rho) t / L^2."""
+    t = TOLERANCES
+    return (0.5 * t["E"]) ** 2 + (0.5 * t["density"]) ** 2 + t["thickness"] ** 2 + (2 * t["length"]) ** 2
+
+
+def forecast_by_curves(curves: tuple[Curve, ...], design: Design, bench: OwnBench) -> DesignForecast:
+    return DesignForecast(design, distances(curves, design, bench))
 
 
 def away(targets: FloatArray, cloud: FloatArray) -> FloatArray:
-    return np.linalg.norm(nearest_in(targets, cloud)[0], axis=1)
+    return Surface(cloud, joined=True).distance(targets, np.eye(cloud.shape[-1]))
 
 
 def test_the_distance_to_a_circle_is_that_to_its_rim() -> None:
@@ -114,46 +108,38 @@ def test_the_distance_to_a_surface_is_that_to_its_plane_between_the_points_of_it
     assert away(points, plane) == pytest.approx(np.abs(points[:, 2]), abs=1e-12)
 
 
-def test_whitened_data_of_specimens_inside_their_tolerances_have_unit_variance(stations: Stations) -> None:
-    """Frequencies of a cantilever go with sqrt(E / rho) t / L^2, so their doubt is known in closed form."""
-    known = known_test(shapes=False, damping_known=False)
-    design = present(known)
-    white = whitener(design, known, stations)
+def test_whitened_data_of_specimens_inside_their_tolerances_have_unit_variance(bench: OwnBench) -> None:
+    design = frequencies_alone(bench)
+    white = bench.whitener(design)
     covariance = np.linalg.inv(white.T @ white)
-    t = SETUP.tolerances
-    common = (0.5 * t.E) ** 2 + (0.5 * t.density) ** 2 + t.thickness**2 + (2 * t.length) ** 2
-    own = known.frequency[0] ** 2 + SETUP.repeatability**2
-    expected = common * np.ones((3, 3)) + own * np.eye(3)
+    own = (2e-4) ** 2 + 5e-4**2
+    expected = common_variance() * np.ones((3, 3)) + own * np.eye(3)
     # shear is a thousandth of the frequencies here, and thickness and length have hold of it
     assert covariance == pytest.approx(expected, rel=5e-3)
-    assert len(columns(design, stations)) == 3
+    assert len(bench.columns(design)) == 3
 
 
 def test_a_modulus_is_seen_where_the_common_doubt_of_the_frequencies_says(
-    curves: tuple[Curve, ...], stations: Stations
+    curves: tuple[Curve, ...], bench: OwnBench
 ) -> None:
-    known = known_test(shapes=False, damping_known=False)
-    seen = forecast_by_curves(curves, present(known), known).limits["E"].seen
-    t = SETUP.tolerances
-    common = (0.5 * t.E) ** 2 + (0.5 * t.density) ** 2 + t.thickness**2 + (2 * t.length) ** 2
-    own = (known.frequency[0] ** 2 + SETUP.repeatability**2) / 3
-    assert seen == pytest.approx(2 * SEEN * np.sqrt(common + own), rel=0.02)
+    seen = forecast_by_curves(curves, frequencies_alone(bench), bench).limits["E"].seen
+    own = ((2e-4) ** 2 + 5e-4**2) / 3
+    assert seen == pytest.approx(2 * SEEN * np.sqrt(common_variance() + own), rel=0.02)
 
 
 def test_frequencies_alone_do_not_tell_a_modulus_from_a_density(
-    curves: tuple[Curve, ...], stations: Stations
+    curves: tuple[Curve, ...], bench: OwnBench
 ) -> None:
-    known = known_test(shapes=False, damping_known=False)
-    now = forecast_by_curves(curves, present(known), known)
+    now = forecast_by_curves(curves, frequencies_alone(bench), bench)
     assert now.pairs["E", "density"] < 0.05
     assert not np.isfinite(now.limits["E"].separated)
     assert any({"E", "density", "thickness"} <= set(group) for group in now.classes)
     assert "section_scale" in now.unseen
 
 
-def test_what_is_the_same_to_any_hammer_stays_the_same(curves: tuple[Curve, ...], stations: Stations) -> None:
+def test_what_is_the_same_to_any_hammer_stays_the_same(curves: tuple[Curve, ...], bench: OwnBench) -> None:
     """Width moves no frequency and all constants alike, as a gain does: on a beam without a sensor's mass, exactly."""
-    now = forecast_by_curves(curves, present(known_test()), known_test())
+    now = forecast_by_curves(curves, bench.design, bench)
     assert now.pairs["section_scale", "calibration_gain"] < 0.02
     assert ("section_scale", "calibration_gain") in EQUAL
     assert np.isfinite(now.limits["section_scale"].separated)
@@ -166,39 +152,63 @@ def test_what_is_the_same_to_any_hammer_stays_the_same(curves: tuple[Curve, ...]
     noise=st.floats(0.1, 0.99),
     drive=st.booleans(),
 )
+@example(calibration=0.003, repeatability=0.0, noise=0.1, drive=False)
 def test_a_better_test_tells_no_less(
     curves: tuple[Curve, ...],
-    stations: Stations,
+    bench: OwnBench,
     calibration: float,
     repeatability: float,
     noise: float,
     drive: bool,
 ) -> None:
-    known, plain = known_test(), present(known_test())
+    plain = bench.design
+    assert bench.layout.drive is not None
     better = replace(
         plain,
         calibration=calibration,
         repeatability=repeatability,
         noise=noise,
-        stations=(*plain.stations, SETUP.sensor) if drive else plain.stations,
+        stations=(*plain.stations, bench.layout.drive) if drive else plain.stations,
     )
     before, after = (
-        forecast_by_curves(curves, design, known).matrix.to_numpy(float) for design in (plain, better)
+        forecast_by_curves(curves, design, bench).matrix.to_numpy(float) for design in (plain, better)
     )
     off = ~np.isnan(before)
     # interpolation between the severities solved leaves a few thousandths
     assert np.all(after[off] >= before[off] * (1 - 5e-3) - 5e-3)
 
 
-def test_every_severity_lies_on_its_own_curve(curves: tuple[Curve, ...], stations: Stations) -> None:
+def test_a_distance_is_that_in_the_whole_covariance_of_data_and_doubt(
+    curves: tuple[Curve, ...], bench: OwnBench
+) -> None:
+    """Each point of a surface has a doubt of its own, which no single whitening makes independent."""
+    by_name = {curve.family.name: curve for curve in curves}
+    clamp, sensor = by_name["clamp_rotation"], by_name["sensor_mass"]
+    for design in (bench.design, replace(bench.design, calibration=0.003, repeatability=0.0, noise=0.1)):
+        have, white = bench.columns(design), bench.whitener(design)
+        known, cloud, targets = (
+            np.linalg.inv(white.T @ white),
+            sensor.cloud[0][:, have],
+            clamp.data[0][:, have],
+        )
+        each = []
+        for point in cloud:
+            left = targets - point
+            whole = known + np.diag((sensor.fidelity * point) ** 2)
+            each.append(np.sqrt(np.sum(left * np.linalg.solve(whole, left.T).T, axis=1)))
+        exact = np.min(each, axis=0)
+        found = Surface(cloud[None], sensor.fidelity).distance(targets, white)
+        assert (exact > 3).sum() > 4
+        assert found[exact > 3] == pytest.approx(exact[exact > 3], rel=0.05)
+
+
+def test_every_severity_lies_on_its_own_curve(curves: tuple[Curve, ...], bench: OwnBench) -> None:
     """A severity that was not solved is met by the interpolation within a small part of a sigma."""
-    known = known_test()
-    design = present(known)
-    white, have = whitener(design, known, stations), columns(design, stations)
+    have, white = bench.columns(bench.design), bench.whitener(bench.design)
     for curve in curves:
-        q = 0.73 * curve.family.clear
-        change = stations.change(curve.family, q, 0.0)[have] @ white.T
-        assert away(change[None], curve.cloud[..., have] @ white.T)[0] < 0.02
+        target = bench.change(curve.family, 0.73 * curve.family.clear, 0.0)[have]
+        (left,) = Surface(curve.cloud[..., have], curve.fidelity).distance(target[None], white)
+        assert left < 0.02, curve.family.name
 
 
 def test_the_sample_beam_cannot_tell_a_modulus_from_a_thickness_until_its_chain_is_calibrated(
@@ -221,107 +231,87 @@ def test_advice_is_ordered_and_names_only_pairs_that_it_turns(sample: Forecast) 
                 assert (a, b) not in EQUAL
 
 
-def test_every_change_says_how_it_is_followed(sample: Forecast) -> None:
-    assert isinstance(sample.bench, RigBench)
-    setup = sample.bench.known_test.setup
+def test_every_change_is_followed(sample: Forecast) -> None:
+    bench = sample.bench
+    assert isinstance(bench, OwnBench)
     for one in sample.advice:
-        followed, design = one.change.follow(setup), one.change.design
-        assert followed.calibration == design.calibration
-        assert followed.baseline == design.baseline
-        assert followed.modes == design.modes
-        assert followed.repeatability == pytest.approx(design.repeatability)
-        assert len(followed.points) - (not followed.drive) == len(design.stations)
-        assert np.sqrt(setup.hits / followed.hits) == pytest.approx(design.noise)
-        assert followed.band[1] > followed.nominal_hz[followed.modes - 1]
+        design, trial = one.change.design, followed(bench.trial, bench.layout, one.change.design)
+        setup, hits = trial.ready.test_setup, bench.trial.ready.test_setup.plan.hits
+        assert trial.study.test.calibration == design.calibration
+        assert trial.study.test.repeatability == pytest.approx(design.repeatability)
+        assert trial.problem.tolerances.factors["thickness"] == trial.study.tolerances.thickness
+        assert len(np.unique(setup.measured.hit)) == len(design.stations)
+        assert np.sqrt(hits / setup.plan.hits) == pytest.approx(design.noise)
+        assert setup.band[1] > bench.problem.measured.frequency[design.modes - 1]
+        assert setup.plan.rate / SAMPLING >= setup.band[1] * (1 - 1e-9)
 
 
 def test_the_document_is_json_and_names_every_effect(sample: Forecast) -> None:
     document = json.loads(json.dumps(to_json(sample), allow_nan=False))
     assert not departures(document, PlanDocument)
-    names = [row["effect"] for row in document["now"]["effects"]]
+    names = [row["name"] for row in document["now"]["effects"]]
     assert names == list(sample.now.names)
     assert {"E", "clamp_rotation", "sensor_mass", "local_stiffness"} <= set(names)
     for row in document["now"]["effects"]:
         assert set(row["sigma"]) == {"none", *names}
 
 
-def test_a_study_with_data_is_read_as_it_was_measured() -> None:
-    known = known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml"))
-    assert known.setup.modes == 3
-    assert known.setup.hits == 15
-    assert known.setup.drive
-    assert known.setup.window == 8.0
-    assert not known.damping_known
-    assert np.all(known.frequency < 2e-4)
+def test_a_study_with_data_is_read_as_it_was_measured(sample: Forecast) -> None:
+    bench = sample.bench
+    assert isinstance(bench, OwnBench)
+    assert (bench.design.modes, bench.hits, bench.layout.drive) == (3, 15, None)
+    assert len(bench.design.stations) == 5
+    assert not bench.design.damping_known
+    test = bench.problem.measured
+    assert np.all(test.frequency_sigma < 2e-4 * test.frequency)
+
+
+def test_the_sample_beam_is_seen_from_where_its_tolerances_say(sample: Forecast) -> None:
+    """Common to all frequencies, sqrt(E / rho) t / L^2: 3 sigma of what the other three leave in doubt, and more."""
+    limits, own = sample.now.limits, 3 * np.sqrt(common_variance())
+    assert np.expm1(limits["E"].seen) < 2 * own
+    assert np.expm1(limits["density"].seen) < np.expm1(limits["E"].seen)
+    assert limits["length"].seen < 0.5 * 0.376 * own
 
 
 def test_modes_alone_are_taken_as_frequencies_alone() -> None:
-    known = known_test_of(read_study(SAMPLES / "beam_dry" / "published.toml"))
-    assert not known.shapes
+    bench = bench_of(read_study(SAMPLES / "beam_dry" / "published.toml"))
+    assert not bench.design.shapes
     # the test was made in air: what a liquid would do is not asked
-    names = {family.name for family in families(known)}
+    names = {family.name for family in bench.families}
     assert not names & {"fluid_added_mass", "fluid_damping", "calibration_gain", "position_error"}
 
 
 def test_what_a_study_does_not_state_of_a_fluid_is_left_open(tmp_path: Path) -> None:
     """Near and far surface and bottom are forms of the fluid; the stated ones are where they are."""
-    path = tmp_path / "study.toml"
-    text, wanted = STUDY.format(test="band = [5.0, 300.0]"), "of a fluid not stated: near or far off"
-    for more, forms, words in (
-        ("", 4, f"free surface and bottom {wanted}"),
-        ("[environment]\nfree_surface = 0.02\n", 2, f"bottom {wanted}"),
-        ("[environment]\nfree_surface = 0.02\nbottom = 0.05\n", 1, "bottom at 50 mm"),
+    for more, forms in (
+        ("", 4),
+        ("[environment]\nfree_surface = 0.02\n", 2),
+        ("[environment]\nfree_surface = 0.02\nbottom = 0.05\n", 1),
     ):
-        path.write_text(text + more)
-        known = known_test_of(read_study(path))
-        fluid = next(family for family in families(known) if family.name == "fluid_added_mass")
-        assert (len(fluid.sites), words in known.statement) == (forms, True)
-        assert not any("fluid" in word for word in known.left_out)
-        base = nominal_scene(known.setup)
-        lowest = [hidden(fluid, base, 998.0, form).elastic().frequency[0] for form in fluid.sites]
+        bench = planned(tmp_path, more=more)
+        fluid = next(family for family in bench.families if family.name == "fluid_added_mass")
+        assert len(fluid.sites) == forms
+        lowest = [bench.change(fluid, 998.0, form)[0] for form in fluid.sites]
         assert len(np.unique(np.round(lowest, 6))) == forms
-        assert all(omega < base.elastic().frequency[0] for omega in lowest)
-    path.write_text(text + "[environment]\nfluid_density = 1.2\n")
-    assert not any("fluid" in word for word in known_test_of(read_study(path)).statement)
-
-
-STUDY = """
-[test]
-{test}
-[model]
-type = "beam"
-length = 0.4
-width = 0.03
-thickness = 0.005
-clamped = ["x0"]
-theory = "timoshenko"
-[model.material]
-E = 210e9
-density = 7850.0
-[model.damping]
-alpha = 1.0
-beta = 1e-6
-"""
+        assert max(lowest) < 0
+    bench = planned(tmp_path, more="[environment]\nfluid_density = 1.2\n")
+    assert bench.not_forecast["fluid_added_mass"] == "the study rules it out"
 
 
 def test_a_test_that_is_only_planned_needs_no_data(tmp_path: Path) -> None:
-    path = tmp_path / "study.toml"
-    path.write_text(
-        STUDY.format(test="points = [0.1, 0.2, 0.3]\nsensor = 0.4\nhits = 7\nband = [5.0, 300.0]")
-    )
-    known = known_test_of(read_study(path))
-    assert known.setup.points == ((0.1,), (0.2,), (0.3,), (0.4,))
-    assert (known.setup.sensor, known.setup.drive, known.setup.hits, known.setup.modes) == (3, False, 7, 2)
-    assert known.damping_known
-    path.write_text(STUDY.format(test=""))
-    assert len(known_test_of(read_study(path)).setup.points) == 8
-    path.write_text(STUDY.format(test="points = [0.1, 0.5]"))
+    bench = planned(tmp_path, "points = [0.1, 0.2, 0.3]\nsensor = 0.4\nhits = 7\nband = [5.0, 300.0]")
+    places = bench.problem.measured.points[list(bench.design.stations), 0]
+    assert places == pytest.approx([0.1, 0.2, 0.3])
+    assert bench.layout.drive is not None
+    assert (bench.hits, bench.design.modes, bench.design.damping_known) == (7, 2, True)
+    assert len(planned(tmp_path, "").design.stations) == 8
     with pytest.raises(StudyError, match=r"0\.5 m is off the beam"):
-        known_test_of(read_study(path))
+        planned(tmp_path, "points = [0.1, 0.5]")
 
 
-def test_a_family_without_signs_is_asked_once_and_one_with_signs_twice() -> None:
-    by_name: dict[str, Family] = {family.name: family for family in families(known_test())}
+def test_a_family_without_signs_is_asked_once_and_one_with_signs_twice(bench: OwnBench) -> None:
+    by_name: dict[str, Family] = {family.name: family for family in bench.families}
     assert len(by_name["E"].asked) == 2
     assert len(by_name["sensor_mass"].asked) == 1
     for family in by_name.values():

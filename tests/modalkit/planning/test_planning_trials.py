@@ -9,26 +9,27 @@ import numpy as np
 import pytest
 
 from modalkit.blind.answer import Answer
-from modalkit.planning import KnownTest, RigBench, forecast
+from modalkit.planning import forecast
 from modalkit.planning.cases import Case, choose
 from modalkit.planning.forecast import Advice, Forecast
-from modalkit.planning.from_study import known_test_of
+from modalkit.planning.own import OwnBench, bench_of
 from modalkit.planning.separability import SEEN
 from modalkit.planning.trials import Tried, check
-from modalkit.planning.writing import noise_for, write_case
+from modalkit.simulation.simulate import simulate_test
+from modalkit.study.named_effects import statement
 from modalkit.study.read import read_study
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 
 
 @pytest.fixture(scope="module")
-def known() -> KnownTest:
-    return known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml"))
+def bench() -> OwnBench:
+    return bench_of(read_study(SAMPLES / "beam_dry" / "study.toml"))
 
 
 @pytest.fixture(scope="module")
-def sample(known: KnownTest) -> Forecast:
-    return forecast(RigBench(known))
+def sample(bench: OwnBench) -> Forecast:
+    return forecast(bench)
 
 
 def separating(sample: Forecast) -> Advice:
@@ -52,46 +53,45 @@ def test_half_of_the_cases_are_what_the_advice_newly_tells_apart(
         assert case.now < SEEN <= case.then
 
 
-def test_cases_stay_inside_the_range_of_their_effect(known: KnownTest, cases: tuple[Case, ...]) -> None:
+def test_cases_stay_inside_the_range_of_their_effect(bench: OwnBench, cases: tuple[Case, ...]) -> None:
     for case in cases:
         assert case.family.low <= case.q <= case.family.high
         assert case.q != 0
-        assert case.family.name in case.accepted(known.setup)
+        assert case.family.cause in bench.right(case)
 
 
-def test_the_files_of_a_case_say_what_the_user_says_and_not_what_is_hidden(
-    known: KnownTest, cases: tuple[Case, ...], tmp_path: Path
+def hidden(case: Case) -> list[tuple[str, dict[str, object]]]:
+    return [(case.family.cause, dict(case.values))]
+
+
+def test_the_data_of_a_case_say_nothing_of_what_is_hidden(
+    bench: OwnBench, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
-    study = read_study(write_case(cases[0], known, tmp_path, seed=[1]))
-    own = read_study(SAMPLES / "beam_dry" / "study.toml")
-    assert study.tolerances == own.tolerances
-    assert study.test.calibration == own.test.calibration
-    assert study.test.exponential_window == own.test.exponential_window
-    assert study.model is not None
-    assert own.model is not None
-    assert study.model.material == own.model.material
-    assert not study.spec().damping.known
-    text = (tmp_path / "study.toml").read_text()
-    assert not any(name in text for name in ("factor", "extension", "effect"))
+    made = bench.trial.write(hidden(cases[0]), tmp_path, seed=[1])
+    assert made.tolerances == bench.study.tolerances
+    assert made.model == bench.study.model
+    assert made.test.calibration == bench.study.test.calibration
+    words = statement(hidden(cases[0])).encode()
+    simulate_test(bench.trial.ready, hidden(cases[0]), seed=1).write(tmp_path / "open.uff")
+    assert words in (tmp_path / "open.uff").read_bytes()
+    assert words not in (tmp_path / "test.uff").read_bytes()
 
 
-def test_the_same_seed_writes_the_same_test(
-    known: KnownTest, cases: tuple[Case, ...], tmp_path: Path
-) -> None:
+def test_the_same_seed_writes_the_same_test(bench: OwnBench, cases: tuple[Case, ...], tmp_path: Path) -> None:
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
-        write_case(cases[0], known, tmp_path / name, seed=[4])
+        bench.trial.write(hidden(cases[0]), tmp_path / name, seed=[4])
     assert (tmp_path / "a" / "test.uff").read_bytes() == (tmp_path / "b" / "test.uff").read_bytes()
 
 
 def test_modes_alone_are_written_where_the_user_has_no_more(
-    known: KnownTest, cases: tuple[Case, ...], tmp_path: Path
+    bench: OwnBench, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
-    known_test = replace(known, shapes=False)
-    study = read_study(write_case(cases[0], known_test, tmp_path, seed=[1]))
-    assert study.test.modes == "test.csv"
-    assert not study.test.files
-    assert len((tmp_path / "test.csv").read_text().splitlines()) == 1 + known_test.setup.modes
+    trial = replace(bench.trial, design=replace(bench.design, shapes=False))
+    made = trial.write(hidden(cases[0]), tmp_path, seed=[1])
+    assert made.test.modes == str(tmp_path / "test.csv")
+    assert not made.test.files
+    assert len((tmp_path / "test.csv").read_text().splitlines()) == 1 + bench.design.modes
 
 
 def tried(case: Case, answer: Answer | None) -> Tried:
@@ -111,11 +111,6 @@ def test_an_answer_is_right_if_it_names_the_effect_or_its_exact_equals_alone(
     for answer in (Answer("none", ()), Answer("unknown", ()), Answer("named", (other,)), None):
         assert not tried(cases[0], answer).named
         assert not tried(cases[0], answer).kept
-
-
-def test_noise_is_matched_in_proportion(known: KnownTest) -> None:
-    setup = replace(known.setup, noise=1e-3)
-    assert noise_for(0.004, 0.002, setup) == pytest.approx(2e-3)
 
 
 @pytest.mark.slow
