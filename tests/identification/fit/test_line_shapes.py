@@ -174,7 +174,7 @@ def test_of_many_frfs_some_are_asked_and_all_get_the_shape(monkeypatch):
     smooth = 0.25 * exact[:, :-2] + 0.5 * exact[:, 1:-1] + 0.25 * exact[:, 2:]
     model = identify(frf_set(frequency, noisy(smooth, 0.002, np.random.default_rng(0))))
     check(model, 0.03, off=0.1)
-    assert asked == [80] * 3
+    assert set(asked) == {80}
     assert model.frfs.line_shape is not None and len(model.frfs.values) == 240
 
 
