@@ -47,38 +47,43 @@ class Surface:
         white : (n_data, n_data) array
             What whitens the data.
         """
-        each = (self._from(place, targets, white) for place in range(len(self.cloud)))
+        colour = np.asarray(np.linalg.inv(white), dtype=np.float64)
+        each = (self._from(place, targets, white, colour) for place in range(len(self.cloud)))
         return np.asarray(np.sqrt(np.min(list(each), axis=0)))
 
-    def _from(self, place: int, targets: FloatArray, white: FloatArray) -> FloatArray:
+    def _from(self, place: int, targets: FloatArray, white: FloatArray, colour: FloatArray) -> FloatArray:
         """Return the squared distance of targets from the part of the surface about a place, (n,) [-].
+
+        ``colour`` is the inverse of what whitens the data.
 
         The nearest point is sought over all severities, then moved within its cell with the doubt that it has there;
         the doubt of the point moved to is the one that counts.
         """
-        axes = self._axes(place, white)
-        seen, points = targets @ axes.T, self.cloud @ axes.T
+        turn = self._turn(place, white)
+        axes, back = turn.T @ white, colour @ turn
+        near = [_within(place + step, len(self.cloud)) for step in (-1, 0, 1)]
+        seen, (before, points, behind) = targets @ axes.T, self.cloud[near] @ axes.T
         weight = self._weight(self.cloud[place], axes)
-        square = np.sum(weight * points[place] ** 2, axis=1) - 2 * seen @ (weight * points[place]).T
+        square = np.sum(weight * points**2, axis=1) - 2 * seen @ (weight * points).T
         best = np.argmin(square + seen**2 @ weight.T, axis=1)
         root = np.sqrt(weight[best])
-        still = (seen - points[place, best]) * root
+        still = (seen - points[best]) * root
         moved = still
-        neighbours = [[points[place, _within(best + step, len(weight))] for step in (-1, 1)]]
+        neighbours = [[points[_within(best + step, len(weight))] for step in (-1, 1)]]
         if self.joined:
-            neighbours.append([points[_within(place + step, len(points)), best] for step in (-1, 1)])
+            neighbours.append([before[best], behind[best]])
         for sides in neighbours:
-            moved = _moved(moved, [(side - points[place, best]) * root for side in sides])
+            moved = _moved(moved, [(side - points[best]) * root for side in sides])
         left = moved / root
-        there = self._weight(targets - np.linalg.solve(axes, left.T).T, axes)
+        there = self._weight(targets - left @ back.T, axes)
         return np.asarray(np.minimum(np.sum(still**2, axis=1), np.sum(there * left**2, axis=1)))
 
-    def _axes(self, place: int, white: FloatArray) -> FloatArray:
-        """Return axes along which the data are uncorrelated and of unit variance, and a place's doubts uncorrelated."""
+    def _turn(self, place: int, white: FloatArray) -> FloatArray:
+        """Return what turns whitened data to axes along which a place's doubts are uncorrelated, too."""
         doubt = self._doubt(self.cloud[place])
         loudness = 1 + doubt @ np.sum(white**2, axis=0)  # what is louder than the data counts alike
         typical = np.mean(doubt / loudness[:, None], axis=0)
-        return np.asarray(np.linalg.eigh((white * typical) @ white.T).eigenvectors.T @ white)
+        return np.asarray(np.linalg.eigh((white * typical) @ white.T).eigenvectors)
 
     def _weight(self, change: FloatArray, axes: FloatArray) -> FloatArray:
         """Return one over the variance along axes, where a change (..., n_data) is as doubtful as it is [-]."""

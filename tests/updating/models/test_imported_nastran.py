@@ -155,6 +155,18 @@ def test_exponents_of_fortran_are_read_wherever_they_begin(
         np.testing.assert_array_equal(read_matrix(path, kind).toarray(), matrix.toarray())
 
 
+def test_a_number_that_lost_its_first_digit_is_refused(tmp_path: Path) -> None:
+    """1P writes one digit before the point: what begins with the point was longer."""
+    path = write_op4(tmp_path / "a.op4", "dense text", KAA=np.diag([1.25e5, 2.25e5]))
+    text = path.read_text()
+    assert read_matrix(path).shape == (2, 2)
+    path.write_text(text.replace(" 1.25", "  .25", 1))
+    with pytest.raises(StudyError, match="no digit before its point, against the format 1P"):
+        read_matrix(path)
+    path.write_text(text.replace(" 1.25", "  .25", 1).replace("1P,", ""))
+    assert read_matrix(path)[0, 0] == 0.25e5
+
+
 def test_an_exponent_of_three_digits_has_no_letter(tmp_path: Path) -> None:
     path = write_op4(tmp_path / "model.op4", "dense text", KAA=np.diag([2.0, -3.0]))
     path.write_text(re.sub(r"(-3\.0+)E\+00", r"\1-120", path.read_text()))

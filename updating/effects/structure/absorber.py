@@ -15,8 +15,8 @@ from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 
 MASS = (1e-4, 0.3)
-"""Range of the mass over the structure's own: from one that drives a mode it is tuned to 1 % apart, the root of it, to a
-second structure [-]."""
+"""Range of the mass over the structure's own: from one that drives a mode it is tuned to 1 % apart, the root of it,
+to a second structure [-]."""
 
 AWAY = 4.0
 """How far below the lowest elastic mode, and above the highest measured one, the mass may swing by itself [-]: lower it

@@ -28,14 +28,17 @@ _OF_THREE = re.compile(rb"([\d.])([+-]\d{3} *)")
 
 @dataclass(frozen=True)
 class _Fields:
-    """How many numbers stand on a line, and in how many characters each."""
+    """How many numbers stand on a line, in how many characters each, and whether all have a digit before the point."""
 
     per_line: int = 5
     width: int = 16
+    led: bool = True
 
     def numbers(self, raw: bytes) -> FloatArray:
         """Return the numbers of fields, whose exponents begin with E, D, or the sign."""
         words = np.frombuffer(raw.translate(_EXPONENTS), dtype=f"S{self.width}")
+        if self.led and np.char.startswith(np.char.lstrip(words, b" +-"), b".").any():
+            raise ValueError("a number has no digit before its point, against the format 1P")
         try:
             return words.astype(np.float64)
         except ValueError:
@@ -115,7 +118,7 @@ def _header(line: bytes, number: int) -> tuple[Held, _Fields, bool]:
     found = _FORMAT.fullmatch(layout)
     if layout and (found is None or not int(found[1]) or not int(found[2])):
         raise ValueError(f"line {number} has {layout.decode('latin-1')[:20]!r} in place of a format")
-    fields = _Fields() if found is None else _Fields(int(found[1]), int(found[2]))
+    fields = _Fields() if found is None else _Fields(int(found[1]), int(found[2]), layout.startswith(b"1P"))
     height = _whole(rows, number)
     held = Held(
         name.decode("latin-1").replace(" ", ""), abs(height), _whole(columns, number), _whole(kind, number)
