@@ -13,7 +13,7 @@ from modalkit.planning.family import Family
 
 if TYPE_CHECKING:
     from modalkit.blind.answer import Answer
-    from modalkit.planning.cases import Case
+    from modalkit.planning.case import Case
 
 
 class Bench(Protocol):

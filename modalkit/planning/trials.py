@@ -12,7 +12,8 @@ import pandas as pd
 from acquisition.errors import ModalkitError
 from modalkit.blind.answer import Answer
 from modalkit.output.schemas.plan import BlindCase, CheckedForecast
-from modalkit.planning.cases import Case, choose
+from modalkit.planning.case import Case
+from modalkit.planning.cases import choose
 from modalkit.planning.forecast import Advice, Forecast
 from modalkit.planning.separability import SEEN, SURE
 

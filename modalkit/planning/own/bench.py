@@ -11,7 +11,7 @@ import scipy.linalg
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from modalkit.blind.answer import Answer
-from modalkit.planning.cases import Case
+from modalkit.planning.case import Case
 from modalkit.planning.changes import Change, Gain
 from modalkit.planning.curves import Curve, refined, solve_curve
 from modalkit.planning.design import Design

@@ -24,7 +24,7 @@ from updating.effects import LIBRARY
 from updating.problem.specimen import SpecimenProblem
 
 if TYPE_CHECKING:
-    from modalkit.planning.cases import Case
+    from modalkit.planning.case import Case
 
 SEED_BITS = 63
 

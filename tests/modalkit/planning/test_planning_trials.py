@@ -10,7 +10,8 @@ import pytest
 
 from modalkit.blind.answer import Answer
 from modalkit.planning import forecast
-from modalkit.planning.cases import Case, choose
+from modalkit.planning.case import Case
+from modalkit.planning.cases import choose
 from modalkit.planning.forecast import Advice, Forecast
 from modalkit.planning.own import OwnBench, bench_of
 from modalkit.planning.separability import SEEN
