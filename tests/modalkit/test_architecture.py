@@ -10,7 +10,11 @@ import sys
 import tokenize
 from pathlib import Path
 
+import grimp
+import numpy as np
 import pytest
+from scipy import sparse
+from scipy.sparse import csgraph
 
 ROOT = Path(__file__).resolve().parents[2]
 ROOMS = ("acquisition", "identification", "updating", "modalkit")
@@ -34,6 +38,21 @@ def test_the_contracts_of_the_import_linter_are_kept() -> None:
     command = [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
+
+
+def test_no_module_needs_itself_through_others_even_for_types() -> None:
+    """The contract on circles leaves aside what types alone need; modules that know each other by type are one."""
+    graph = grimp.build_graph(*ROOMS, exclude_type_checking_imports=False, cache_dir=None)
+    modules = sorted(graph.modules)
+    number = {name: i for i, name in enumerate(modules)}
+    pairs = [
+        (i, number[to]) for name, i in number.items() for to in graph.find_modules_directly_imported_by(name)
+    ]
+    rows, columns = np.array(pairs).T
+    links = sparse.coo_array((np.ones(len(pairs)), (rows, columns)), shape=(len(modules), len(modules)))
+    _, circle = csgraph.connected_components(links, directed=True, connection="strong")
+    shared = np.flatnonzero(np.bincount(circle) > 1)
+    assert not len(shared), [[m for m, c in zip(modules, circle, strict=True) if c == one] for one in shared]
 
 
 @pytest.mark.parametrize("room", ROOMS[:3])
