@@ -52,7 +52,7 @@ def members(path: Path) -> dict[str, bytes]:
                 raise ValueError(f"{packed} bytes that unpack to more than {allowed(packed)}")
             if any(info.compress_size > packed for info in infos):  # zipfile would make room for them
                 raise ValueError("an array of more bytes than the archive has")
-            if len({info.filename for info in infos}) < len(infos):
+            if len({info.filename.removesuffix(".npy") for info in infos}) < len(infos):
                 raise ValueError("two arrays of one name")
             return {info.filename.removesuffix(".npy"): archive.read(info) for info in infos}
     # zipfile raises NotImplementedError for ways of packing that it does not know, RuntimeError for a password

@@ -230,7 +230,7 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
             "order rises; widen the band, raise the order or check the FRFs"
         )
     fitted = fit_shaped(data, start, band=limits, course=course)
-    if fitted.frfs.line_shape is not None:
+    if fitted.frfs.line_shape is not None and data.line_shape is None:
         data = with_shape(data, fitted.frfs.line_shape.kind)
     return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)
 

@@ -98,7 +98,8 @@ def _worth_a_fit(frfs: FrfSet, few: ComplexArray, possible: list[Kind]) -> list[
     """
     if not possible:
         return []
-    frfs = frfs.select(list(range(0, len(frfs.values), -(-len(frfs.values) // ASKED))))
+    count = len(frfs.values)
+    frfs = frfs.select(np.unique(np.linspace(0, count - 1, min(count, ASKED)).round().astype(int)).tolist())
     plain = _of_few(frfs, few)[0]
     best: list[tuple[float, float]] = []
     kinds: list[Kind] = []

@@ -37,10 +37,8 @@ _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
 _COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
-_ROUNDS, _SETTLED = (
-    10,
-    0.2,
-)  # rounds over shifts at the most, and the last step of a pole in standard deviations
+_ROUNDS = 10  # over shifts at the most
+_SETTLED = 0.2  # the last step of a pole [standard deviations]
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
@@ -268,7 +266,7 @@ def _settled(
     """
     for _ in range(_ROUNDS):
         drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
-        if not drift.shift.any():
+        if not drift.shift.any() and data is frfs:
             break
         data = carried_over(frfs, fit.poles, drift.shift, powers=fit.linear.powers, weights=weights)
         before, fit = fit.poles, _refined(data, fit, weights, band, _FINE)

@@ -167,7 +167,7 @@ def _peaks(frfs: FrfSet, rows: IntArray) -> _Peaks:
     width = signal.peak_widths(np.exp(above), at, rel_height=1.0 - np.sqrt(0.5))[0] * step
     unit = frfs.values[rows] / np.sqrt(power.mean(axis=1, keepdims=True))
     poles = np.array([_pole(frfs, unit, g, w) for g, w in zip(grid[at], width, strict=True)], complex)
-    here = np.abs(np.log(np.maximum(poles.imag, 1e-9) / (2 * np.pi)) - grid[at]) <= width
+    here = (poles.real < 0) & (np.abs(np.log(np.maximum(poles.imag, 1e-9) / (2 * np.pi)) - grid[at]) <= width)
     poles, kept = poles[here], at[here]
     return _Peaks(np.log(poles.imag / (2 * np.pi)), np.abs(poles.real) / poles.imag, above[kept])
 

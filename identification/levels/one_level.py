@@ -130,8 +130,8 @@ def with_line_doubt(model: ModalModel, found: LevelDependence) -> ModalModel:
 def hits_damping(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     """Return the damping that hits show at the common level, less the model's, and its standard deviation.
 
-    Averages that are smeared have broader peaks than any hit has. The hits are weighted as those of
-    `slopes.level_dependence`; the standard deviation is that of leaving out one point after the other (MacKinnon and
+    Averages that are smeared have broader peaks than any hit has. The hits are weighted by
+    their own errors; the standard deviation is that of leaving out one point after the other (MacKinnon and
     White, J. Econometrics 29 (1985) 305-325, HC3), as hits at one point have errors in common, and widened for the
     number of points that count, so that 1.96 of it are a 95 % interval.
 
@@ -140,7 +140,9 @@ def hits_damping(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     damping, sigma : (n_modes,) arrays [-]
     """
     shifts = found.damping_shifts - _damping_by_level(found)
-    weight = 1 / (found.damping_sigmas**2 + np.median(found.damping_sigmas, axis=0) ** 2)
+    variance = np.maximum(found.damping_sigmas**2, np.finfo(float).tiny)
+    # what no misfit shows keeps any hit from ruling alone: hits that do not show a mode are no measure of it
+    weight = 1 / (variance + len(variance) / np.sum(1 / variance, axis=0))
     several = found.point.max() > 0
     group = found.point if several else np.arange(len(shifts))
     member = (group[:, None] == np.arange(group.max() + 1)).astype(np.float64)

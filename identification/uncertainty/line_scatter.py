@@ -7,7 +7,9 @@ lines; Liang and Zeger, Biometrika 73 (1986) 13-22, over outputs).
 
 Lines smoothed by a quarter, a half and a quarter have noise that was smoothed with them, or noise that came after, or
 both. The law of either is known; how much there is of each follows from the residual: what a fit leaves of few lines
-has itself lost what the fit took for the modes."""
+has itself lost what the fit took for the modes. What outputs have in common is in the first sum alone: the larger
+counts.
+"""
 
 from __future__ import annotations
 
@@ -39,10 +41,10 @@ def line_factors(fitted: Fitted) -> FloatArray:
         The fit.
     """
     shape = fitted.frfs.line_shape
-    of_kind = _of_smoothed if shape is not None and shape.kind == "smoothed" else _of_averaged
+    laws = (_of_averaged, _of_smoothed) if shape is not None and shape.kind == "smoothed" else (_of_averaged,)
     inverse = inverse_information(fitted.fit.equations.step.normal)
-    found = np.einsum("ab,bc,ca->a", inverse, of_kind(fitted), inverse) / (0.5 * np.diag(inverse))
-    each = found.reshape(-1, 2).mean(axis=1)
+    found = [np.einsum("ab,bc,ca->a", inverse, law(fitted), inverse) for law in laws]
+    each = (np.max(found, axis=0) / (0.5 * np.diag(inverse))).reshape(-1, 2).mean(axis=1)
     return np.asarray(np.maximum(each, max(1.0, float(each.mean()))))
 
 
@@ -94,6 +96,8 @@ def _levels(fitted: Fitted, columns: ComplexArray) -> tuple[float, float]:
     half = np.linalg.svd(np.concatenate([scaled.real, scaled.imag]), full_matrices=False)[0]
     taken = half.reshape(2, len(columns), -1).transpose(1, 0, 2)
     n_lines = len(columns)
+    if 2 * n_lines <= taken.shape[2] + 1:  # nothing is left of them
+        return 1.0, 0.0
 
     def crossed(one: FloatArray, other: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("lca,lcb->ab", one, other))
@@ -117,7 +121,9 @@ def _levels(fitted: Fitted, columns: ComplexArray) -> tuple[float, float]:
     white, smoothed = np.linalg.solve(expected, 2.0 * np.array(seen) / n_frf)
     if smoothed < 0.0:
         return 1.0, 0.0
-    return max(float(white), 0.0), float(smoothed)
+    if white < 0.0:
+        return 0.0, 2.0 * float(seen[0]) / n_frf / float(expected[0, 1])
+    return float(white), float(smoothed)
 
 
 def _smooth(values: np.ndarray) -> np.ndarray:

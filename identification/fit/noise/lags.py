@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal.windows import tukey
 
-from acquisition.arrays import ComplexArray, squared
+from acquisition.arrays import ComplexArray, FloatArray, squared
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations.basis import Axis
 from identification.fit.equations.refine import Fit
@@ -30,28 +30,31 @@ over 60 blocks have a tenth of that. Doubled: peaks a line wide tell no more."""
 def contradicted(frfs: FrfSet, fit: Fit) -> bool:
     """Tell whether FRFs ring at the lags at which their line shape leaves nothing.
 
-    They do if their power there is nearer to what the modes of a fit would have without the shape than with it.
+    They do if their power there is nearer to what the modes of a fit would have without the shape than with it. FRFs
+    count by the part of their power that the fit explains: noise rings at all lags.
 
     Parameters
     ----------
     frfs : FrfSet
         The FRFs, with the line shape that they may have.
     fit : Fit
-        A fit to them with it.
+        A fit to them, with it or without.
     """
     shape = frfs.line_shape
     if shape is None:
         return False
     axis = Axis.of(frfs)
-    held = _share(synthesise(axis, fit.poles, fit.linear), shape.silent)
-    free = _share(synthesise(replace(axis, shape=None), fit.poles, fit.linear), shape.silent)
-    return free > TOLD and _share(frfs.values, shape.silent) > 0.5 * (held + free)
+    shaped, plain = (synthesise(a, fit.poles, fit.linear) for a in (axis, replace(axis, shape=None)))
+    given, tiny = squared(frfs.values).sum(axis=1), np.finfo(float).tiny
+    told = np.minimum(squared(plain).sum(axis=1) / np.maximum(given, tiny), 1.0) ** 2 + tiny
+    held, free, seen = (_share(values, shape.silent, told) for values in (shaped, plain, frfs.values))
+    return free > TOLD and seen > 0.5 * (held + free)
 
 
-def _share(values: ComplexArray, lags: tuple[float, float]) -> float:
-    """Return the part of the power of FRFs between two lags, the mean over the FRFs [-]."""
+def _share(values: ComplexArray, lags: tuple[float, float], weight: FloatArray) -> float:
+    """Return the part of the power of FRFs between two lags, the weighted mean over the FRFs [-]."""
     n_lines = values.shape[1]
     power = squared(np.fft.ifft(values * tukey(n_lines, EDGE), axis=1))
     lag = np.arange(n_lines) / n_lines
     part = power[:, (lag > lags[0]) & (lag < lags[1])].sum(axis=1)
-    return float(np.mean(part / np.maximum(power.sum(axis=1), np.finfo(float).tiny)))
+    return float(np.average(part / np.maximum(power.sum(axis=1), np.finfo(float).tiny), weights=weight))

@@ -18,6 +18,7 @@ from identification import (
     level_dependence,
     stretched_averages,
 )
+from identification.levels.one_level import hits_damping
 
 LOSS, LEVEL = 0.005, PLAN.peak
 SLOPE = np.array([-0.05, -0.04, -0.03, -0.03]) / LEVEL
@@ -99,3 +100,18 @@ def test_inputs_are_left_as_they_are() -> None:
     copies = [p.motion.copy() for p in test.points]
     brought(test)
     assert all(np.array_equal(p.motion, copy) for p, copy in zip(test.points, copies, strict=True))
+
+
+def test_hits_that_do_not_show_a_mode_do_not_rule_its_damping() -> None:
+    """Three points at an antinode, six at nodes: the six are off by whatever their noise gives."""
+    shown = np.repeat([True, False], [6, 12])
+    rng = np.random.default_rng(1)
+    sigma = np.where(shown, 1e-5, 0.1)[:, None]
+    nothing = np.zeros((18, 1))
+    found = LevelDependence(
+        np.zeros(1), np.ones(1), np.zeros(1), np.ones(1), 50.0, 30.0, 70.0, np.linspace(30, 70, 18),
+        np.arange(18) // 2, nothing, nothing + 1e-5, 1e-3 + sigma * rng.standard_normal((18, 1)), sigma,
+    )  # fmt: skip
+    damping, spread = hits_damping(found)
+    assert damping == pytest.approx(1e-3, abs=3e-5)
+    assert 1e-6 < spread[0] < 1e-4
