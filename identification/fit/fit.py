@@ -15,7 +15,7 @@ from identification.fit.drift import Drift, carried_over, estimate_drift
 from identification.fit.equations import background
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.projection import State
-from identification.fit.equations.pruning import inside, pole_covariance
+from identification.fit.equations.pruning import inside
 from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.noise import leakage, window_shaped
@@ -37,8 +37,6 @@ _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
 _COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
-_ROUNDS = 10  # over shifts at the most
-_SETTLED = 0.2  # the last step of a pole [standard deviations]
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
@@ -253,29 +251,9 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
     if data is fitted and np.abs(np.log(variance / used[1])).max() < _SAME_NOISE:
         (weights, variance, measured), known = used, fit.equations
     fit = _refined(data, fit, weights, band, _FINE, known)
-    data, fit, drift = _settled(frfs, data, fit, drift, weights, band)
+    drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
     residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
     return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
-
-
-def _settled(
-    frfs: FrfSet, data: FrfSet, fit: Fit, drift: Drift, weights: Weights, band: tuple[float, float]
-) -> tuple[FrfSet, Fit, Drift]:
-    """Carry over and refine until the poles rest: what is left of an FRF stays at its own peak, so where that lies half
-    a width beside the common one, a round mends only a part.
-    """
-    for _ in range(_ROUNDS):
-        drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
-        if not drift.shift.any() and data is frfs:
-            break
-        data = carried_over(frfs, fit.poles, drift.shift, powers=fit.linear.powers, weights=weights)
-        before, fit = fit.poles, _refined(data, fit, weights, band, _FINE)
-        sigma = np.sqrt(np.diag(pole_covariance(fit)))
-        if len(before) == len(fit.poles) and np.all(
-            np.abs((fit.poles - before).view(np.float64)) < _SETTLED * sigma
-        ):
-            break
-    return data, fit, drift
 
 
 def _noise(
