@@ -36,7 +36,7 @@ def aligned(frfs: FrfSet, fit: Fit, known: Drift | None = None) -> tuple[FrfSet,
         What is known of the drift.
     """
     drift = (Drift.none(len(frfs.values), fit.poles) if known is None else known).at(fit.poles)
-    state = carried_over(frfs, fit.poles, drift.shift, powers=fit.linear.powers), fit, drift
+    state = carried_over(frfs, fit, drift), fit, drift
     for each in (False, True):
         for _ in range(_ROUNDS):
             better = _round(frfs, *state, each=each)
@@ -56,8 +56,8 @@ def _round(
     change = np.abs(new.shift - drift.at(fit.poles).shift) * np.abs(fit.poles / fit.poles.real)
     if change.max(initial=0.0) < _SETTLED:
         return None
+    moved = carried_over(frfs, fit, new)
     powers = fit.linear.powers
-    moved = carried_over(frfs, fit.poles, new.shift, powers=powers)
     before = refine(data, fit.poles, weights, powers=powers, iterations=_STEPS)
     after = refine(moved, fit.poles, weights, powers=powers, iterations=_STEPS)
     if after.cost > _WORTH * before.cost:

@@ -13,9 +13,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import uniform_filter1d
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.drift import LARGEST, measuring_order
+from identification.fit.equations import basis
+from identification.fit.equations.residues import fit_residues, synthesise
 
 FEWEST = 4
 """Sets of FRFs under which no course is looked for [-]: two in each half. Doubled: small tests that drift show a row of
@@ -116,4 +118,26 @@ def resampled(frfs: FrfSet, course: FloatArray) -> FrfSet:
         rows = np.flatnonzero(course == shift)
         at = np.clip(frfs.frequency * (1.0 + shift), low, high)
         values[rows] = CubicSpline(frfs.frequency, frfs.values[rows], axis=1)(at)
+    return replace(frfs, values=values)
+
+
+def without_course(frfs: FrfSet, poles: ComplexArray, course: FloatArray, powers: tuple[int, ...]) -> FrfSet:
+    """Return FRFs as they would be at common poles, each fitted by these where its course has them.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs as measured.
+    poles : (n_modes,) complex array
+        Poles in the middle of the test [rad/s].
+    course : (n_frf,) array
+        As of :func:`course_of` [-].
+    powers : tuple of int
+        Of the residual terms [-].
+    """
+    values, axis = np.array(frfs.values), basis.Axis.of(frfs)
+    for shift in np.unique(course):
+        rows = np.flatnonzero(course == shift)
+        linear = fit_residues(frfs.select(rows), poles * (1.0 + shift), powers=powers)
+        values[rows] += synthesise(axis, poles, linear) - synthesise(axis, poles * (1.0 + shift), linear)
     return replace(frfs, values=values)

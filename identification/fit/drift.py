@@ -20,7 +20,7 @@ from identification.arrangement import arrange
 from identification.fit.equations import basis
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.refine import Fit, frequency_scores
-from identification.fit.equations.residues import fit_residues, synthesise
+from identification.fit.equations.residues import synthesise
 from identification.fit.noise.common_spread import common_factors
 from identification.fit.noise.disagreement import scatter_beyond_noise
 from identification.fit.noise.weights import decay_over_record, left_over
@@ -186,14 +186,16 @@ def _from_scores(
     common = _common_variance(
         pulls @ within / window_shaped_noise, within @ information @ within / window_shaped_noise
     )
-    raw, raw_variance = _own_shifts(pulls, information, within, reach)
-    each = _own_variances(raw, raw_variance, own & within, common)
+    each = np.zeros(n_modes)
+    if (own & within).any():
+        each = _own_variances(pulls, information, own & within, common, reach)
     prior = common * np.outer(within, within) + np.diag(each)
     given = np.linalg.inv(np.eye(n_modes) + information @ prior)
     posterior = prior @ given
     shift = np.clip(np.einsum("gnm,gm->gn", posterior, pulls), -LARGEST, LARGEST)
     total = np.diag(prior)
     shared = common * np.einsum("gnm,gm->gn", given, pulls) @ within
+    raw, raw_variance = _own_shifts(pulls, information, within, reach)
     return Drift(
         poles=fit.poles,
         shift=shift[label],
@@ -248,31 +250,25 @@ def _common_variance(pulls: FloatArray, information: FloatArray) -> float:
     )
 
 
-def _own_variances(shifts: FloatArray, variance: FloatArray, own: BoolArray, common: float) -> FloatArray:
+def _own_variances(
+    pulls: FloatArray, information: FloatArray, own: BoolArray, common: float, reach: FloatArray
+) -> FloatArray:
     """Return the variances of the shifts that each mode has beside the common ones, (n_modes,) [-].
 
     Two modes that share a peak in few lines are taken for one, whose frequency is another in every FRF. Where half of
     the groups shift it by more than is believed of a shift, it is none.
-
-    Parameters
-    ----------
-    shifts, variance : (n_groups, n_modes) arrays
-        Each group's own shifts and their variances, as of :func:`_own_shifts` [-].
-    own : (n_modes,) bool array
-        Which modes may have shifts of their own.
-    common : float
-        Variance of the shifts common to all modes [-].
     """
-    variance = np.where(own, variance, np.inf)
+    shifts, variance = _own_shifts(pulls, information, own, reach)
     weight = 1.0 / (variance + common)
     mean = np.sum(weight * shifts, axis=1) / np.maximum(weight.sum(axis=1), np.finfo(float).tiny)
-    beside = shifts - (mean if own.sum() > 1 and common > 0 else 0.0 * mean)[:, None]
-    each = scatter_beyond_noise(beside, variance)
+    each = scatter_beyond_noise(
+        shifts - (mean if own.sum() > 1 and common > 0 else 0.0 * mean)[:, None], variance
+    )
     count = np.isfinite(variance).sum(axis=0)
-    middle = np.sum(beside / variance, axis=0) / np.maximum(
+    mean = np.sum(shifts / variance, axis=0) / np.maximum(
         np.sum(1.0 / variance, axis=0), np.finfo(float).tiny
     )
-    sure = _surely(np.sum((beside - middle) ** 2 / variance, axis=0), count, _CHANCE_OF_ONE)
+    sure = _surely(np.sum((shifts - mean) ** 2 / variance, axis=0), count, _CHANCE_OF_ONE)
     beyond = np.sum((np.abs(shifts) > LARGEST) & np.isfinite(variance), axis=0)
     return np.where((count < _FEW_OF_ONE) | ~sure | (2 * beyond > count), 0.0, each)
 
@@ -296,41 +292,27 @@ def _of_the_mean(information: FloatArray, variance: FloatArray, common: float) -
     return np.asarray(np.clip(share, 1.0 / len(information), 1.0) * wider)
 
 
-def carried_over(
-    frfs: FrfSet,
-    poles: ComplexArray,
-    shift: FloatArray,
-    *,
-    powers: tuple[int, ...],
-    weights: Weights | None = None,
-) -> FrfSet:
+def carried_over(frfs: FrfSet, fit: Fit, drift: Drift) -> FrfSet:
     """Return FRFs as they would be with the common poles: own poles' contributions exchanged for the common ones'.
-
-    Each FRF is fitted by its own poles: residues fitted to what was carried over would be right only after many rounds
-    where shifts are as large as the half-power width.
 
     Parameters
     ----------
     frfs : FrfSet
         The FRFs as measured.
-    poles : (n_modes,) complex array
-        Common poles [rad/s].
-    shift : (n_frf, n_modes) array
-        Frequency of each mode in each FRF over the common one, less 1 [-].
-    powers : tuple of int
-        Of the residual terms [-].
-    weights : Weights, optional
-        Reciprocal noise variances; default the same at all lines [1 / unit of the FRFs squared].
+    fit : Fit
+        Common poles and residues.
+    drift : Drift
+        Shifts.
     """
-    moved = np.flatnonzero(np.any(shift, axis=1))
+    moved = np.flatnonzero(np.any(drift.shift, axis=1))
     if len(moved) == 0:
         return frfs
     values, axis = np.array(frfs.values), basis.Axis.of(frfs)
-    alike, which = np.unique(shift[moved], axis=0, return_inverse=True)
-    for number, of_one in enumerate(alike):
+    straight = synthesise(axis, fit.poles, fit.linear)
+    alike, which = np.unique(drift.shift[moved], axis=0, return_inverse=True)
+    for number, shift in enumerate(alike):
         rows = moved[which == number]
-        own = poles * (1.0 + of_one)
-        some = None if weights is None else weights.of(rows)
-        linear = fit_residues(frfs.select(rows), own, powers=powers, weights=some)
-        values[rows] += synthesise(axis, poles, linear) - synthesise(axis, own, linear)
+        linear = replace(fit.linear, residues=fit.linear.residues[rows], terms=fit.linear.terms[rows])
+        own = synthesise(axis, fit.poles * (1.0 + shift), linear)
+        values[rows] += straight[rows] - own
     return replace(frfs, values=values)

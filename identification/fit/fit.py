@@ -11,6 +11,7 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.alignment import aligned, distinct
+from identification.fit.course import without_course
 from identification.fit.drift import Drift, carried_over, estimate_drift
 from identification.fit.equations import background
 from identification.fit.equations.normal_equations import Weights
@@ -118,13 +119,13 @@ def fit_candidates(
         If no candidate is a mode of the band.
     """
     ladder = background.term_ladder(band)
-    known = None if course is None else Drift.common_to(start, course)
-    data = frfs if known is None else carried_over(frfs, start, known.shift, powers=ladder[0])
+    data = frfs if course is None else without_course(frfs, start, course, ladder[0])
     fit = refine(data, start, uniform_weights(data), powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     weights = search_weights(data, fit)
     fit = refine(data, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     fit = without_split_modes(data, pruned(data, fit, weights, band, iterations=SHORT, tolerance=COARSE))
-    data, fit, drift = aligned(frfs, fit, None if course is None else Drift.common_to(fit.poles, course))
+    known = None if course is None else Drift.common_to(fit.poles, course)
+    data, fit, drift = aligned(frfs, fit, known)
     fit = completed(data, fit, band, ladder)
     if drift.variance.any():
         data, fit, drift = aligned(frfs, without_split_modes(data, fit), drift)
@@ -235,8 +236,7 @@ def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArr
 
 def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself, carry over to common poles and refine until all agree."""
-    powers = fit.linear.powers
-    data = carried_over(frfs, fit.poles, drift.at(fit.poles).shift, powers=powers)
+    data = carried_over(frfs, fit, drift.at(fit.poles))
     residual = left_over(data, fit)
     absorbed = absorbed_by(data, fit, search_weights(data, fit, residual))
     weights, variance, measured = _noise(data, fit, residual, absorbed)
@@ -244,7 +244,7 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
         fit = _refined(data, fit, weights, band, COARSE)
         used, fitted = (weights, variance, measured), data
         drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
-        data = carried_over(frfs, fit.poles, drift.shift, powers=powers, weights=weights)
+        data = carried_over(frfs, fit, drift)
         residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
         weights, variance, measured = _noise(data, fit, residual, absorbed)
     known = None

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray, IntArray, row_blocks
+from acquisition.arrays import ComplexArray, FloatArray, row_blocks
 
 _RIDGE, _SINGULAR = 1e-15, 1e-10  # added to columns of unit length; the second where the first does not do
 _MANY = (
@@ -39,10 +39,6 @@ class Weights:
     def full(self) -> FloatArray:
         """Weight of every value, shape (n_frf, n_lines)."""
         return self.level[:, None] * self.lines
-
-    def of(self, rows: IntArray) -> Weights:
-        """Return the weights of some FRFs."""
-        return Weights(self.level[rows], self.lines if len(self.lines) == 1 else self.lines[rows], self.fade)
 
 
 @dataclass(frozen=True, eq=False)

@@ -46,8 +46,8 @@ def contradicted(frfs: FrfSet, fit: Fit) -> bool:
     axis = Axis.of(frfs)
     shaped, plain = (synthesise(a, fit.poles, fit.linear) for a in (axis, replace(axis, shape=None)))
     given, tiny = squared(frfs.values).sum(axis=1), np.finfo(float).tiny
-    told = np.minimum(squared(plain).sum(axis=1) / np.maximum(given, tiny), 1.0) ** 2 + tiny
-    held, free, seen = (_share(values, shape.silent, told) for values in (shaped, plain, frfs.values))
+    explained = np.minimum(squared(plain).sum(axis=1) / np.maximum(given, tiny), 1.0) ** 2 + tiny
+    held, free, seen = (_share(values, shape.silent, explained) for values in (shaped, plain, frfs.values))
     return free > TOLD and seen > 0.5 * (held + free)
 
 
