@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -264,7 +265,8 @@ def _check_once(records: Sequence[_Record]) -> None:
     """Check that no record of a point stands twice: noise makes any two hits differ."""
     seen: dict[bytes, _Record] = {}
     for record in records:
-        first = seen.setdefault(record.force.tobytes() + record.motion.tobytes(), record)
+        numbers = sha256(record.force.tobytes() + record.motion.tobytes()).digest()
+        first = seen.setdefault(numbers, record)
         if first is not record:
             raise InputError(
                 f"{record.where}: the same numbers, sample by sample, as {first.where}; one hit counted twice makes "

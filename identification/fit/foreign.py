@@ -192,7 +192,10 @@ def _pole(frfs: FrfSet, values: ComplexArray, place: float, width: float) -> com
     s = 2j * np.pi * (frfs.frequency[lines] - frfs.frequency[middle])
     straight = np.linalg.qr(np.stack([np.ones_like(s), s], axis=1))[0]
     bent, moved = (h - (h @ straight.conj()) @ straight.T for h in (values[:, lines], values[:, lines] * s))
-    return complex(2j * np.pi * frfs.frequency[middle] + np.vdot(bent, moved) / np.vdot(bent, bent).real)
+    power = max(
+        float(np.vdot(bent, bent).real), np.finfo(float).tiny
+    )  # none: a peak that is a straight line is none
+    return complex(2j * np.pi * frfs.frequency[middle] + np.vdot(bent, moved) / power)
 
 
 def _largest(peaks: list[_Peaks]) -> IntArray:

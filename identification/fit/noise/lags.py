@@ -22,7 +22,7 @@ EDGE = 0.2
 """Part of the band over which FRFs are faded in and out, both ends together [-]: a step at its end rings over all lags.
 Doubled: modes near the ends count less."""
 
-TOLD = 0.01
+LEAST = 0.01
 """Part of the power that modes without the shape must have at those lags, for the lags to tell [-]: errors of averages
 over 60 blocks have a tenth of that. Doubled: peaks a line wide tell no more."""
 
@@ -48,7 +48,7 @@ def contradicted(frfs: FrfSet, fit: Fit) -> bool:
     given, tiny = squared(frfs.values).sum(axis=1), np.finfo(float).tiny
     explained = np.minimum(squared(plain).sum(axis=1) / np.maximum(given, tiny), 1.0) ** 2 + tiny
     held, free, seen = (_share(values, shape.silent, explained) for values in (shaped, plain, frfs.values))
-    return free > TOLD and seen > 0.5 * (held + free)
+    return free > LEAST and seen > 0.5 * (held + free)
 
 
 def _share(values: ComplexArray, lags: tuple[float, float], weight: FloatArray) -> float:

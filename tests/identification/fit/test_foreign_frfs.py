@@ -92,7 +92,7 @@ def test_an_frf_near_a_node_stays() -> None:
     assert frfs.responses[6] == Dof(7, 3)
 
 
-def test_peaks_that_lie_less_than_a_line_beside_the_others_are_told_apart() -> None:
+def test_peaks_less_than_a_line_beside_the_others_are_others() -> None:
     coarse, rng = lines(df=1.0, low=20.0, high=340.0), np.random.default_rng(3)
     truth, pairs = structure(HERTZ, (0.003,) * 3, 13, 3), column(13)
     frfs = truth.frfs(coarse, pairs, noise=0.005, rng=rng)

@@ -253,7 +253,7 @@ def test_end_lines_to_which_a_neighbour_is_missing():
 
 
 @pytest.mark.parametrize("before", [True, False])
-def test_noise_that_was_smoothed_with_the_lines_is_told_from_noise_that_came_after(before):
+def test_noise_smoothed_with_the_lines_differs_from_noise_that_came_after(before):
     poles, residues = structure(0.03)
     frequency = np.arange(5.0, 156.0, 5.0)
     rng = np.random.default_rng(1)
