@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import ComplexArray, FloatArray, squared
 from acquisition.errors import EstimationError
 from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.line_shape import KINDS, Kind, LineShape
+from identification.fit.equations.basis import Axis, build
 from identification.fit.equations.refine import Fit, refine
-from identification.fit.equations.residues import uniform_weights
+from identification.fit.equations.residues import synthesise, uniform_weights
 from identification.fit.fit import Fitted, fit_candidates
 from identification.fit.noise.lags import contradicted
 from identification.fit.noise.leakage import follows, leaked
@@ -68,7 +69,7 @@ def fit_shaped(
     try:
         fits.append(fit_candidates(frfs, start, band=band, course=course))
         fit = fits[0].fit
-        possible = [kind for kind in KINDS if not contradicted(with_shape(frfs, kind), fit)]
+        possible = [kind for kind in worth_asking(fits[0]) if not contradicted(with_shape(frfs, kind), fit)]
         starts.append(_merged(fit.poles, np.abs(fit.linear.residues).sum(axis=0), frfs.df))
     except EstimationError as error:
         failure = error
@@ -89,6 +90,51 @@ def _may_have_a_shape(frfs: FrfSet, start: ComplexArray) -> bool:
     """Tell whether FRFs may have a line shape: none is excluded, and peaks are not far wider than lines."""
     known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None
     return not known and bool(np.any(-start.real < BROAD * frfs.df))
+
+
+def worth_asking(fitted: Fitted) -> list[Kind]:
+    """Return the line shapes that a fit without one does not exclude.
+
+    A small part of a shape would change the FRFs in a direction; what other poles, residues and residual terms can do
+    alike is taken from it. How far what the fit leaves goes along that direction needs no second fit (Rao's score test,
+    Proc. Camb. Phil. Soc. 44 (1948) 50-57). A shape is excluded if a part of none gains anything, and all of it
+    costs much. Only modes alone within what a window shows as one are asked: pairs of poles may imitate the shape,
+    and leave nothing of it.
+
+    Parameters
+    ----------
+    fitted : Fitted
+        A fit without a line shape.
+    """
+    frfs, poles, linear = fitted.frfs, fitted.fit.poles, fitted.fit.linear
+    near = np.abs(poles.imag[:, None] - poles.imag) <= RESOLVED * 2 * np.pi * frfs.df
+    axis, alone = Axis.of(frfs), replace(linear, residues=linear.residues * (near.sum(axis=1) == 1))
+    plain = synthesise(axis, poles, alone)
+    weight = np.exp(-0.5 * np.log(fitted.variance).mean(axis=0))
+    columns = build(axis, poles, linear.powers).columns * weight[:, None]
+    split = np.vstack([columns.real, columns.imag])
+    directions = np.linalg.qr(split / np.linalg.norm(split, axis=0))[0]
+    kinds: list[Kind] = []
+    for kind in KINDS:
+        shaped = synthesise(replace(axis, shape=LineShape(kind, 1.0 / frfs.df)), poles, alone)
+        change = _without(directions, (shaped - plain) * weight) / weight
+        along = float(np.sum((change.conj() * fitted.residual).real / fitted.variance))
+        power = float(np.sum(squared(change) / fitted.variance)) + np.finfo(float).tiny
+        if 2.0 * along**2 / power > STRONG:
+            return list(
+                KINDS
+            )  # the fit leaves more than noise, and what it would leave with a shape is not known
+        if 2.0 * (power - 2.0 * along) < STRONG:
+            kinds.append(kind)
+    return kinds
+
+
+def _without(directions: FloatArray, rows: ComplexArray) -> ComplexArray:
+    """Return rows less their part in orthonormal directions of real and imaginary parts [unit of the rows]."""
+    flat = np.hstack([rows.real, rows.imag])
+    flat -= (flat @ directions) @ directions.T
+    n_lines = rows.shape[1]
+    return np.asarray(flat[:, :n_lines] + 1j * flat[:, n_lines:])
 
 
 def _worth_a_fit(frfs: FrfSet, few: ComplexArray, possible: list[Kind]) -> list[Kind]:

@@ -14,9 +14,10 @@ from identification import identify, line_shapes
 from identification.fit.course import course_of
 from identification.fit.equations.basis import Axis
 from identification.fit.equations.residues import Residues, synthesise
+from identification.fit.fit import fit_candidates
 from identification.fit.noise.leakage import leaked, shared
 from identification.fit.noise.levels import local_mean
-from identification.line_shapes import fit_shaped
+from identification.line_shapes import fit_shaped, worth_asking
 from identification.uncertainty.line_scatter import line_factors
 
 HERTZ = np.array([63.6, 81.5, 97.0, 115.0, 129.0, 142.0])
@@ -176,6 +177,21 @@ def test_of_many_frfs_some_are_asked_and_all_get_the_shape(monkeypatch):
     check(model, 0.03, off=0.1)
     assert set(asked) == {96}
     assert model.frfs.line_shape is not None and len(model.frfs.values) == 240
+
+
+@pytest.mark.parametrize("kind", ["averaged", "smoothed"])
+def test_what_leaves_noise_alone_asks_for_no_second_fit_and_what_was_windowed_does(kind):
+    """The score of a shape that is not there is chi-squared of one unknown; one that is there is never excluded."""
+    poles, residues = structure(0.005)
+    frequency, linear = np.arange(40.0, 160.0, 0.5), Residues(residues, np.zeros((6, 2)), (-2, 0))
+    plain = Axis(2j * np.pi * frequency, "accelerance")
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        without = frf_set(frequency, noisy(synthesise(plain, poles, linear), 0.01, rng))
+        assert worth_asking(fit_candidates(without, poles, band=(40.0, 160.0))) == []
+        axis = replace(plain, shape=LineShape(kind, 2.0))
+        windowed = frf_set(frequency, noisy(synthesise(axis, poles, linear), 0.01, rng))
+        assert kind in worth_asking(fit_candidates(windowed, poles, band=(40.0, 160.0)))
 
 
 def test_frfs_of_noise_alone_do_not_deny_a_window():
