@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from updating.frf_update.evaluation import Evaluation
 from updating.frf_update.stage import Stage, whitened
+from updating.update.bounds import bounded_step
 
 BEGIN = 0.5
 """Discrepancy to begin with [-]."""
@@ -155,19 +156,11 @@ def _small(stage: Stage, moved: FloatArray, share: float) -> bool:
 
 def increment(stage: Stage, theta: FloatArray, rows: FloatArray, load: FloatArray) -> FloatArray:
     """Return the step of Eq. 10, at most `LARGEST` doubts; what is at a bound and pushed further stays."""
-    free = np.ones(len(theta), dtype=bool)
-    step = np.zeros(len(theta))
-    for _ in range(len(theta)):
-        step[:] = 0.0
-        step[free] = _cut_off((rows * stage.doubt)[:, free], load) * stage.doubt[free]
-        tiny = 1e-9 * (stage.high - stage.low)
-        out = free & (
-            ((theta <= stage.low + tiny) & (step < 0)) | ((theta >= stage.high - tiny) & (step > 0))
-        )
-        if not out.any():
-            break
-        free &= ~out
-    step = np.where(free, step, 0.0)
+
+    def of_free(free: BoolArray) -> FloatArray:
+        return np.asarray(_cut_off((rows * stage.doubt)[:, free], load) * stage.doubt[free])
+
+    step = bounded_step(of_free, theta, stage.low, stage.high)
     longest = np.abs(step / stage.doubt).max(initial=0.0)
     return np.asarray(step * min(1.0, LARGEST / max(longest, 1e-300)))
 

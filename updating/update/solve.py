@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
+from updating.update.bounds import bounded_step
 from updating.update.data.nominal import Evaluation
 from updating.update.data.system import Linear, System
 
@@ -121,21 +122,12 @@ def step(system: System, linear: Linear, theta: FloatArray, bend: FloatArray | N
     root = np.sqrt(linear.weight)
     rows = np.vstack([root[:, None] * linear.sensitivity, np.diag(np.sqrt(system.prior))])
     load = np.concatenate([root * linear.residual, np.sqrt(system.prior) * (system.centre - theta)])
-    free = np.ones(len(theta), dtype=bool)
-    increment = np.zeros(len(theta))
-    for _ in range(len(theta)):
-        increment[:] = 0.0
+
+    def of_free(free: BoolArray) -> FloatArray:
         part = None if bend is None or not bend.any() else bend[np.ix_(free, free)]
-        increment[free] = _least((rows * system.doubt)[:, free], load, part) * system.doubt[free]
-        tiny = 1e-9 * (system.high - system.low)
-        out = free & (
-            ((theta <= system.low + tiny) & (increment < 0))
-            | ((theta >= system.high - tiny) & (increment > 0))
-        )
-        if not out.any():
-            break
-        free &= ~out
-    return np.where(free, increment, 0.0)
+        return np.asarray(_least((rows * system.doubt)[:, free], load, part) * system.doubt[free])
+
+    return bounded_step(of_free, theta, system.low, system.high)
 
 
 def _least(rows: FloatArray, load: FloatArray, bend: FloatArray | None) -> FloatArray:
