@@ -129,18 +129,31 @@ def _further(
 
     Modes that are known, as their constants do not grow at the poles of each hit, stay. How the poles of a faint
     product follow the level may not be determined: constants are taken at poles that follow it and at poles that do
-    not, and the growth with the smaller standard deviation stands.
+    not, and the growth with the smaller standard deviation stands. Modes that show only when products are left out are
+    examined in their turn.
     """
     from identification import growth
 
-    still, followed = (growth(even.model, tests, found, windows=windows) for found in (None, even.found))
-    assert still is not None
-    assert followed is not None
-    grown = followed.surer(still)
+    names: tuple[str, ...] = ()
     reach = _reach(known, np.ones(len(known.model), np.bool_))
-    apart = np.abs(even.model.modal.frequency[:, None] - known.model.modal.frequency)
-    which = grown.products & (apart > reach).all(axis=1)
-    return even.without(which), _products(even, which, grown).names
+    while True:
+        still, followed = (growth(even.model, tests, found, windows=windows) for found in (None, even.found))
+        assert still is not None
+        assert followed is not None
+        grown = followed.surer(still)
+        apart = np.abs(even.model.modal.frequency[:, None] - known.model.modal.frequency)
+        which = grown.products & (apart > reach).all(axis=1)
+        names = (*names, *_products(even, which, grown).names)
+        rest = even.without(which)
+        if not _newcomers(rest, even, _reach(even, ~which)):
+            return rest, names
+        even = rest
+
+
+def _newcomers(now: Examined, before: Examined, reach: FloatArray) -> bool:
+    """Tell whether there are modes that were not there before: peaks that others, since left out, had covered."""
+    apart = np.abs(now.model.modal.frequency[:, None] - before.model.modal.frequency)
+    return bool((apart > reach).all(axis=1).any())
 
 
 def _at_one_level(
