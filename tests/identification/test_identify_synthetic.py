@@ -143,7 +143,7 @@ def test_reciprocity_and_signs_of_directions(rng):
     np.testing.assert_allclose(identify(turned).constants, one.constants, rtol=1e-8, atol=1e-10)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(scale=st.floats(1e-6, 1e6), seed=st.integers(0, 2**31), shuffle=st.permutations(range(5)))
 def test_scale_and_order_of_the_frfs_do_not_matter(scale, seed, shuffle):
     truth = structure((50.0, 90.0), (0.01, 0.02), 5, seed=9)

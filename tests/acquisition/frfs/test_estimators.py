@@ -170,7 +170,7 @@ def test_a_point_without_usable_hits_is_left_out():
     assert set(frfs.references) == {Dof(9, 3)}
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(order=st.permutations(range(5)), force=st.floats(1e-3, 1e3), motion=st.floats(1e-3, 1e3))
 def test_order_of_hits_and_units_do_not_matter(order, force, motion):
     test = noisy(4, samples=256)

@@ -57,7 +57,7 @@ def frfs(test: HammerTest):
 
 
 @pytest.mark.parametrize("decay", [0.0, 4.0])
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     offset=st.floats(-200.0, 200.0),
     trend=st.floats(-50.0, 50.0),

@@ -71,7 +71,7 @@ def test_a_force_that_rings_is_no_double_hit(low_pass, kind):
     assert second_hits(rung) == []
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     height=st.floats(0.1, 1.0),
     delay=st.integers(60, 2000),

@@ -236,7 +236,6 @@ def test_twins_are_identical_at_their_precision(shared_data, name):
 
 FUZZ = settings(
     max_examples=150,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 

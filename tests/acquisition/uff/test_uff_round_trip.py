@@ -31,9 +31,7 @@ PART = st.just(0.0) | st.floats(1e-30, 1e9) | st.floats(-1e9, -1e-30)
 """What a rig measures; of less than 1e-30 the last byte may be that of a line end, and such a file is refused."""
 
 FINITE = st.floats(-1e12, 1e12, allow_nan=False)
-SAME_FOLDER = settings(
-    max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None
-)
+SAME_FOLDER = settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def some_test(rng: np.random.Generator, rate: float = 4096.0, decay: float = 0.0) -> HammerTest:

@@ -39,7 +39,7 @@ def turn(shapes, i, j, degrees):
     return mixed
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.sets(st.integers(0, 5), min_size=3),
     st.sets(st.integers(0, 5), min_size=3),

@@ -17,7 +17,7 @@ def indices(pairs):
     return [(p.test, p.model) for p in pairs]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(0.45, 1.6), st.permutations(range(6)), st.integers(0, 1000))
 def test_shapes_pair_through_a_common_factor_and_any_order(factor, order, seed):
     rng = np.random.default_rng(seed)

@@ -153,7 +153,7 @@ def test_points_tied_to_nothing_are_left_out_and_named(truth):
     assert_right(shapes, truth)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.permutations(range(12)),
     st.floats(1e-9, 1e9),

@@ -41,7 +41,7 @@ def test_diagnosis_names_every_mode(modes: int) -> None:
     first=st.sampled_from(EFFECTS),
     sets=st.integers(2, 8),
 )
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 def test_diagnosis_is_legible_wherever_the_cause_sits(
     kind: str, x: float, y: float, first: str, sets: int
 ) -> None:

@@ -145,7 +145,7 @@ def test_what_is_the_same_to_any_hammer_stays_the_same(curves: tuple[Curve, ...]
     assert np.isfinite(now.limits["section_scale"].separated)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(
     calibration=st.floats(0.003, 0.019),
     repeatability=st.floats(0.0, 0.00049),

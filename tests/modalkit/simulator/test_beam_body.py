@@ -111,7 +111,7 @@ def test_slope_is_the_derivative_of_the_deflection() -> None:
     np.testing.assert_allclose(STOCKY.rows(x, "slope") @ shapes, difference, rtol=1e-5)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     start=st.floats(-0.05, 0.05),
     length=st.floats(0.2, 1.2),

@@ -226,7 +226,7 @@ def test_hanging_mass_splits_a_mode() -> None:
     assert hung.rows(np.array([[0.1, 0.1]]), "w").shape == (1, len(shapes))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(centre=st.floats(0.0, 1.0), extent=st.floats(0.005, 0.5), elements=st.integers(2, 9))
 def test_lines_are_ordered_and_keep_ends_and_windows(centre: float, extent: float, elements: int) -> None:
     window = (centre - extent / 2, centre + extent / 2)

@@ -151,7 +151,7 @@ def full(data: Comparison, scale: float, keep: np.ndarray) -> np.ndarray:
     return np.asarray((np.diag(noise) + data.nuisance @ data.nuisance.T)[np.ix_(keep, keep)])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 10**6), part=st.sampled_from(["all", "some", "no shapes"]))
 def test_the_marginal_is_that_of_the_full_covariance(seed: int, part: str) -> None:
     data = comparison(seed)
@@ -175,7 +175,7 @@ def test_the_marginal_is_that_of_the_full_covariance(seed: int, part: str) -> No
     assert found.shift == pytest.approx(data.nuisance[keep].T @ inverse @ data.residual[keep], abs=1e-7)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 10**6), scale=st.sampled_from(SHAPE_NOISE_SCALES))
 def test_whitened_least_squares_is_that_of_the_full_covariance(seed: int, scale: float) -> None:
     data = comparison(seed)

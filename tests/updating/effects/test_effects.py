@@ -100,7 +100,7 @@ def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
 
 
 @admitted(["local_stiffness", "local_mass", "uniform_damping"], ["beam", "plate", "matrices"])
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(u=st.floats(0.01, 0.99))
 def test_values_go_back_to_the_quantiles_they_came_from(name: str, place: str, u: float) -> None:
     effect, predictor = LIBRARY[name], LOOK[place]
@@ -131,7 +131,7 @@ def test_what_cannot_be_examined_is_said() -> None:
 
 
 @admitted()
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(u=st.floats(0.0, 1.0))
 def test_priors_have_a_range_and_quantiles_go_there_and_back(name: str, place: str, u: float) -> None:
     effect = LIBRARY[name]

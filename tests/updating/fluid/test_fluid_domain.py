@@ -63,7 +63,7 @@ def test_a_large_tank_is_unbounded():
 
 
 @given(gap=st.floats(0.05, 3.0), farther=st.floats(1.1, 3.0))
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 def test_nearer_walls_add_mass_and_a_nearer_surface_takes_it(gap, farther):
     def walls(distance: float) -> float:
         sides = (-distance, 1.0 + distance, -distance, 1.0 + distance)

@@ -148,7 +148,7 @@ def test_beam_and_plate_with_a_rigid_section_are_the_same():
     thickness=st.floats(0.0, 0.3),
     seed=st.integers(0, 1000),
 )
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_scaling_symmetry_and_positivity(scale, ratio, thickness, seed):
     shapes = np.random.default_rng(seed).normal(size=(4, 7, 7))
     matrices = []

@@ -87,7 +87,7 @@ def test_thickness_acts_as_in_the_exact_flow_whatever_the_shape(ratio, shape):
 
 
 @given(thickness=st.floats(1e-4, 0.2), more=st.floats(1.05, 2.0))
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 def test_thickness_raises_the_added_mass(thickness, more):
     x, y = quadrature_grid(1.5, 1.0, 8)
     thin, thick, thicker = (

@@ -98,7 +98,7 @@ def test_the_depth_of_the_layer_in_water():
 
 
 @given(scale=st.floats(1e-2, 1e2), ratio=st.floats(0.3, 3.0), seed=st.integers(0, 99))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_slip_scales_is_symmetric_and_positive(scale, ratio, seed):
     shapes = np.random.default_rng(seed).normal(size=(3, 6, 6))
     found = []

@@ -45,7 +45,7 @@ def test_a_doubt_settled_at_nothing_leaves_noise_and_what_the_size_makes_up_for(
     assert marginal(bare).share == 1
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), size=st.floats(0.06, 0.6))
 def test_an_effect_that_is_just_so_loses_little_by_a_doubt_it_has_no_need_of(seed: int, size: float) -> None:
     """At the most the doubt may be, it loses the factor of a noise many times too large, once for each mode."""
@@ -59,7 +59,7 @@ def test_an_effect_that_is_just_so_loses_little_by_a_doubt_it_has_no_need_of(see
         assert marginal(summed).log_likelihood > marginal(summed.settled(1.0)).log_likelihood + 2
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), size=st.floats(0.2, 0.6))
 def test_an_effect_that_is_far_from_just_so_loses_the_number_of_sizes(seed: int, size: float) -> None:
     """A misfit as large as the doubt: the most it may be is the most probable."""

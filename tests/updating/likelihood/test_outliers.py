@@ -66,21 +66,21 @@ def test_every_outlier_costs_the_same_and_none_nothing() -> None:
     assert log_price([Outlier(mode=1), Outlier(source=2)]) == pytest.approx(2 * log_price([Outlier(mode=1)]))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), mode=st.integers(0, MODES - 1))
 def test_a_frequency_twelve_sigma_off_is_suspected_first(seed: int, mode: int) -> None:
     found = suspects(comparison(seed, off={mode: 12.0}), 1.0, 2)
     assert {(one.mode, one.channel) for one in found} & {(mode, 0)}
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), row=st.integers(0, ROWS - 1))
 def test_a_bad_channel_is_suspected_first(seed: int, row: int) -> None:
     off = {MODES + MODES * row + m: 7.0 * (-1) ** m for m in range(MODES)}
     assert suspects(comparison(seed, off=off), 1.0, 1)[0].source == row
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10_000))
 def test_the_order_is_that_of_leaving_each_frequency_out(seed: int) -> None:
     """Each residual over its deviation, from a fit to all other data, by brute force."""

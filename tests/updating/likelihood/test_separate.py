@@ -47,7 +47,7 @@ def covariance(data: Comparison, scale: float, keep: BoolArray) -> FloatArray:
 patterns = st.tuples(st.integers(2, 9), st.integers(1, 4), st.integers(1, 3), st.integers(1, 2))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(pattern=patterns, seed=st.integers(0, 2**31), share=st.floats(0.5, 1.0))
 def test_the_likelihood_is_that_of_one_normal_distribution(pattern: Pattern, seed: int, share: float) -> None:
     data = comparison(pattern, seed)
@@ -63,7 +63,7 @@ def test_the_likelihood_is_that_of_one_normal_distribution(pattern: Pattern, see
         np.testing.assert_allclose(found.shift, shift, atol=1e-8)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(pattern=patterns, seed=st.integers(0, 2**31))
 def test_the_normal_equations_are_those_of_generalised_least_squares(pattern: Pattern, seed: int) -> None:
     data = comparison(pattern, seed)
@@ -75,7 +75,7 @@ def test_the_normal_equations_are_those_of_generalised_least_squares(pattern: Pa
     np.testing.assert_allclose(load, weighed.T @ data.residual, rtol=1e-8, atol=1e-8)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     seed=st.integers(0, 2**31), rows=st.integers(1, 40), columns=st.integers(FEW_NUISANCES, FEW_NUISANCES + 20),
     filled=st.sampled_from([0.0, 0.01, 0.05, 0.3, 1.0]),

@@ -98,7 +98,7 @@ def assert_same(found: Prediction, expected: Prediction) -> None:
     )
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=seeds)
 def test_the_order_of_the_rows_does_not_matter(bars: ModuleType, seed: int) -> None:
     imported, state = bent(bars, seed), changed(seed)
@@ -116,7 +116,7 @@ def test_the_order_of_the_rows_does_not_matter(bars: ModuleType, seed: int) -> N
     assert_same(predicted(other, nodes, directions, state), predicted(imported, nodes, directions, state))
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=seeds)
 def test_structure_and_sensors_may_be_turned_together(bars: ModuleType, seed: int) -> None:
     """The turned one is put together anew along other axes: places, matrices and directions, modal constants alike."""
@@ -129,7 +129,7 @@ def test_structure_and_sensors_may_be_turned_together(bars: ModuleType, seed: in
     )
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(seed=seeds)
 def test_the_reduced_basis_is_off_by_its_stated_error(bars: ModuleType, seed: int) -> None:
     """Frequencies with other moduli and densities on the basis and on all degrees of freedom, by LAPACK."""

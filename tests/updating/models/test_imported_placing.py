@@ -37,7 +37,7 @@ def places(at: np.ndarray, directions: tuple[int, ...] = (3,)) -> Places:
     return Places.of(table, len(node))
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(kind=st.sampled_from(["line", "plane", "block"]), seed=st.integers(0, 10**6), node=st.booleans())
 def test_a_quadratic_motion_is_followed_exactly(kind: str, seed: int, node: bool) -> None:
     """Value and slope, as far as the nodes spread; across them the slope is nothing."""

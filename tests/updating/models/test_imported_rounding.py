@@ -89,7 +89,7 @@ def test_ten_digits_of_a_stiff_offset_do_not_move_the_first_mode() -> None:
     assert elastic(given) == pytest.approx(exact.frequencies(11)[6:], rel=1e-8)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     seed=st.integers(0, 2**31),
     digits=st.integers(6, 16),
@@ -108,7 +108,7 @@ def test_digits_of_the_file_change_no_count_of_rigid_modes(
     assert elastic(given, 3) == pytest.approx(expected, rel=max(GUYAN, 1e3 * 10.0**-digits))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     seed=st.integers(0, 2**31),
     held=st.sampled_from([(), (0,)]),

@@ -130,7 +130,7 @@ def reduced(imported: Imported, **options: object) -> Reduced:
     return reduce_structure(structure, np.array([[LENGTH, 0, 0], [0.3 * LENGTH, 0, 0]]), None, modes=12)
 
 
-@settings(deadline=None, max_examples=12)
+@settings(max_examples=12)
 @given(
     whole=st.floats(0.4, 2.5), heavier=st.floats(0.4, 2.5), root=st.floats(0.7, 1.4), tip=st.floats(0.7, 1.4),
     elements=st.sampled_from([24, 230]),

@@ -138,7 +138,7 @@ factor = st.floats(0.6, 1.6)
 LOOK = Predictor(replace(SLENDER, elements=(20,)), blank(np.linspace(0.2, 1.0, 5), top=100.0))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(modulus=factor, density=factor, thickness=factor, width=factor, length=factor)
 def test_eigenvalues_of_a_uniform_beam_grow_by_their_powers(
     modulus: float, density: float, thickness: float, width: float, length: float
@@ -167,7 +167,7 @@ TRUE = ExactBeam(1.0, 0.02, 0.005, shear=False, rotary=False)
 ROOTS = TRUE.frequencies(3)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(x=st.floats(0.01, 0.99))
 def test_displacement_and_slope_can_be_asked_for_anywhere(x: float) -> None:
     structure = build_structure(SLENDER)

@@ -58,7 +58,7 @@ def test_the_nominal_model_is_reduced_without_loss(name: str) -> None:
 
 
 @evaluation
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(u=st.integers(0, 4), share=st.floats(0.001, 0.5))
 def test_a_mass_at_a_test_point(name: str, u: int, share: float) -> None:
     """Up to half the structure's mass, as the prior of the sensor's mass allows."""
@@ -73,7 +73,7 @@ def test_a_mass_at_a_test_point(name: str, u: int, share: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["timoshenko", "euler-bernoulli", "free"])
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(u=st.floats(0.03, 0.97), extent=st.floats(0.02, 0.15), loss=st.floats(0.05, 0.95))
 def test_a_soft_spot_anywhere_on_a_beam(name: str, u: float, extent: float, loss: float) -> None:
     """Under Timoshenko's theory only to half the scatter of re-mounting, and up to a loss of 0.6.

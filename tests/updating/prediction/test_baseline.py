@@ -46,7 +46,7 @@ def corrected(test: Measured) -> Predictor:
     return own_predictor.for_test(test, (lambda _: state,))
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(ratios=st.lists(st.floats(0.85, 1.2), min_size=2, max_size=5), shapes=st.booleans())
 def test_the_model_takes_the_baselines_frequencies_and_damping(ratios: list[float], shapes: bool) -> None:
     test = baseline(ratios, shapes=shapes)

@@ -49,7 +49,7 @@ def test_mac_is_what_its_definition_says() -> None:
     assert np.diag(found) == pytest.approx(np.ones(6))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(order=st.permutations(range(5)), level=st.floats(0.1, 10), stretch=st.floats(0.8, 1.25))
 def test_shapes_find_their_partner_in_any_order_and_level(
     order: list[int], level: float, stretch: float

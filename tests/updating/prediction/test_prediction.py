@@ -109,7 +109,7 @@ def test_slopes_are_what_moving_the_hit_changes(name: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "grows"), [("beam", 1.0), ("other end", 0.0), ("both", 0.5), ("free", 0.5)])
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(stretch=st.floats(0.95, 1.1))
 def test_points_keep_their_distance_from_the_free_end(name: str, grows: float, stretch: float) -> None:
     predictor = LOOK[name]

@@ -75,7 +75,7 @@ def test_what_is_not_along_z_is_left_out_and_said() -> None:
     assert "5+X" in test.warnings[0]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(turn=st.sampled_from([(0, 1, 2), (1, 2, 0), (2, 0, 1)]), shift=st.floats(-2, 2))
 def test_any_axes_of_the_test_give_the_same_points(turn: tuple[int, int, int], shift: float) -> None:
     """The model's x, y, z lie along the test's axes ``turn``."""

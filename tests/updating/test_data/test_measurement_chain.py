@@ -57,7 +57,7 @@ def test_a_reversed_point_reverses_its_own_rows_only(name: str) -> None:
 
 
 @both
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(away=st.floats(-0.02, 0.02))
 def test_a_point_that_moved_reads_as_one_stated_there(name: str, away: float) -> None:
     here = TESTS[name]

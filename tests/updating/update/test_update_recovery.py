@@ -50,7 +50,7 @@ def regional(spec: Spec, names: list[str], factors: list[float]) -> Spec:
 factor = st.floats(0.7, 1.4)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(factors=st.lists(factor, min_size=3, max_size=3))
 def test_region_factors_of_a_beam_are_recovered_exactly(factors: list[float]) -> None:
     names = ["root.E", "middle.E", "tip.density"]
