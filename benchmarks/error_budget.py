@@ -126,7 +126,7 @@ def _cause(found: Search, leader: Compared, true: Explanation) -> tuple[str, flo
         return "search", searched
     if leads:
         return "rejection", searched
-    if Compared(true, 0.0, true.p_value, true.p_value).rejected:
+    if Compared(explanation=true, probability=0.0, p_value=true.p_value, as_stated=true.p_value).rejected:
         return "sketch", searched
     behind = leader.explanation.best.marginal.log_likelihood - true.best.marginal.log_likelihood
     return ("prior" if 2 * behind < CLOSE_FITS else "information"), searched

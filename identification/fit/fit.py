@@ -41,7 +41,7 @@ _COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Fitted:
     """A fit with the noise it was weighted by.
 
@@ -253,7 +253,16 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
     fit = _refined(data, fit, weights, band, _FINE, known)
     drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
     residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
-    return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+    return Fitted(
+        fit=fit,
+        weights=weights,
+        variance=variance,
+        residual=residual,
+        absorbed=absorbed,
+        measured=measured,
+        frfs=data,
+        drift=drift,
+    )
 
 
 def _noise(

@@ -45,14 +45,14 @@ def rig_of_data(session: Session, options: Options) -> MeasurementSetup:
     if session.identified.points_rejected:
         notes.append(f"not hit again: {'; '.join(session.identified.points_rejected)}")
     return MeasurementSetup(
-        test,
-        tuple(frfs.responses[i] for i in rows),
-        tuple(frfs.references[i] for i in rows),
-        np.asarray(signs(frfs)[test.rows] * test.signs),
-        frfs.geometry,
-        session.identified.band,
-        plan,
-        tuple(notes),
+        measured=test,
+        responses=tuple(frfs.responses[i] for i in rows),
+        references=tuple(frfs.references[i] for i in rows),
+        signs=np.asarray(signs(frfs)[test.rows] * test.signs),
+        geometry=frfs.geometry,
+        band=session.identified.band,
+        plan=plan,
+        notes=tuple(notes),
     )
 
 

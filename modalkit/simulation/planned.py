@@ -78,14 +78,14 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     plan = _usual_plan(band, slowest + study.test.exponential_window, options)
     plan = replace(plan, position_sigma=study.test.position_sigma, decay=study.test.exponential_window)
     return MeasurementSetup(
-        _blank(points, nodes, directions, sensor, hit),
-        (names[sensor],) * len(hit),
-        tuple(names[i] for i in hit),
-        np.ones(len(hit)),
-        geometry,
-        band,
-        plan,
-        tuple(notes),
+        measured=_blank(points, nodes, directions, sensor, hit),
+        responses=(names[sensor],) * len(hit),
+        references=tuple(names[i] for i in hit),
+        signs=np.ones(len(hit)),
+        geometry=geometry,
+        band=band,
+        plan=plan,
+        notes=tuple(notes),
     )
 
 

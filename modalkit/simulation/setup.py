@@ -52,7 +52,7 @@ class Options:
     remount: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class MeasurementSetup(Displayed):
     """A test without its data.
 

@@ -147,17 +147,17 @@ def _diagnose(
         verdict, sets, lacks = "unknown", (), "one size"
     _stage(progress, "choosing the next test")
     return Diagnosis(
-        " and ".join(titles),
-        significant,
-        chance,
-        _gap(problem, titles),
-        _locate(problem, found, verdict),
-        shrink,
-        verdict,
-        sets,
-        rank(problem, found),
-        propose(problem, found, sets, verdict),
-        tuple(
+        title=" and ".join(titles),
+        significant=significant,
+        p_value=chance,
+        gap=_gap(problem, titles),
+        where=_locate(problem, found, verdict),
+        shrink=shrink,
+        verdict=verdict,
+        sets=sets,
+        ranking=rank(problem, found),
+        next_test=propose(problem, found, sets, verdict),
+        warnings=tuple(
             dict.fromkeys(
                 (
                     *warnings,
@@ -166,13 +166,13 @@ def _diagnose(
                 )
             )
         ),
-        found.not_examined,
-        comparable,
-        left if significant or found.empty.explanation.candidate.outliers else None,
-        included(found),
-        own,
-        lacks if verdict == "unknown" else None,
-        found.searched,
+        not_examined=found.not_examined,
+        comparable=comparable,
+        remainder=left if significant or found.empty.explanation.candidate.outliers else None,
+        included=included(found),
+        own=own,
+        lacks=lacks if verdict == "unknown" else None,
+        searched=found.searched,
     )
 
 
@@ -206,16 +206,16 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
     predictor = predictor.for_test(measured)
     accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
     problem = SpecimenProblem(
-        predictor,
-        measured,
-        tolerances,
-        paired.order,
-        baseline,
-        baseline_order,
-        accepted,
-        theory_error(predictor, paired.order),
-        paired.mostly_alone,
-        there,
+        predictor=predictor,
+        measured=measured,
+        tolerances=tolerances,
+        order=paired.order,
+        baseline=baseline,
+        baseline_order=baseline_order,
+        accepted=accepted,
+        theory_error=theory_error(predictor, paired.order),
+        mostly_alone=paired.mostly_alone,
+        before_additions=there,
     )
     return problem, warnings
 

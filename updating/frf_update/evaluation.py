@@ -23,7 +23,7 @@ STEP = 1e-4
 """Step of the differences of matrices, relative to a parameter's doubt [-]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Evaluation:
     """A model at one setting of its parameters.
 
@@ -81,7 +81,16 @@ def evaluate(
     gain = level * (there / laplace) ** order if decay else np.full(len(laplace), level, dtype=complex)
     states = answers(matrices, rows.T, there)
     receptance = gain * on_each_line(rows, states)[:, ends.response, ends.excitation].T
-    return Evaluation(state, matrices, rows, states, receptance, there, gain, order)
+    return Evaluation(
+        state=state,
+        matrices=matrices,
+        rows=rows,
+        states=states,
+        receptance=receptance,
+        laplace=there,
+        gain=gain,
+        order=order,
+    )
 
 
 def _parts(predictor: Predictor, state: State, ends: Columns) -> tuple[Matrices, FloatArray, float, float]:

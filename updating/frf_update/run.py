@@ -335,15 +335,15 @@ def _stage(specimen: Specimen, frfs: MeasuredFrfs, parameter_set: ParameterSet, 
         centres = _unmatched(specimen, frfs, earlier)
         widths = np.full(len(centres), STRANGE)
     return Stage(
-        specimen.predictor,
-        frfs,
-        columns(frfs),
-        parameter_set,
-        replace(earlier, ratios=ratios),
-        centres,
-        widths,
-        _warp(specimen, frfs, earlier) if only_damps else np.ones(len(frfs.laplace)),
-        test.frequency[order],
+        predictor=specimen.predictor,
+        frfs=frfs,
+        ends=columns(frfs),
+        parameter_set=parameter_set,
+        earlier=replace(earlier, ratios=ratios),
+        resonances=centres,
+        widths=widths,
+        warp=_warp(specimen, frfs, earlier) if only_damps else np.ones(len(frfs.laplace)),
+        all_resonances=test.frequency[order],
     )
 
 

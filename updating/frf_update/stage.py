@@ -27,7 +27,7 @@ CHANCE = 1e-3
 """A misfit less probable than this is the model's, not the noise's [-]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Stage:
     """What one stage solves.
 

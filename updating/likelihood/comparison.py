@@ -66,7 +66,7 @@ class Block:
     unseen: FloatArray | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Comparison:
     """Measured minus predicted data at one state, with what may explain it.
 
@@ -197,19 +197,21 @@ def assemble(
         nuisance[here, named[i] : named[i + 1]] = block.named
         nuisance[here, own[i] : own[i + 1]] = block.own
     return Comparison(
-        np.concatenate([block.residual for block in blocks]) + nuisance[:, :count] @ shift,
-        nuisance,
-        np.concatenate([block.variance for block in blocks]),
-        np.concatenate([np.full(len(block.residual), CHANNELS.index(block.channel)) for block in blocks]),
-        np.concatenate([block.mode for block in blocks]),
-        np.concatenate([_source(block) for block in blocks]),
-        (prediction,),
-        scale_prior,
-        np.arange(named[-1]),
-        np.arange(count),
-        _filled([(block.idealised, len(block.residual)) for block in blocks], 0.0),
-        _filled([(block.idle, len(block.residual)) for block in blocks], False),
-        _filled([(block.unseen, len(block.residual)) for block in blocks], 0.0),
+        residual=np.concatenate([block.residual for block in blocks]) + nuisance[:, :count] @ shift,
+        nuisance=nuisance,
+        variance=np.concatenate([block.variance for block in blocks]),
+        channel=np.concatenate(
+            [np.full(len(block.residual), CHANNELS.index(block.channel)) for block in blocks]
+        ),
+        mode=np.concatenate([block.mode for block in blocks]),
+        source=np.concatenate([_source(block) for block in blocks]),
+        predictions=(prediction,),
+        scale_prior=scale_prior,
+        doubts=np.arange(named[-1]),
+        tolerances=np.arange(count),
+        idealised=_filled([(block.idealised, len(block.residual)) for block in blocks], 0.0),
+        idle=_filled([(block.idle, len(block.residual)) for block in blocks], False),
+        unseen=_filled([(block.unseen, len(block.residual)) for block in blocks], 0.0),
     )
 
 
@@ -235,27 +237,29 @@ def join(parts: Sequence[Comparison]) -> Comparison:
     modes = np.cumsum([0, *(len(part.prediction.frequency) for part in parts)])
     sources = np.cumsum([0, *(1 + int(part.source.max(initial=-1)) for part in parts)])
     return Comparison(
-        np.concatenate([part.residual for part in parts]),
-        block_diag(*(part.nuisance for part in parts)),
-        np.concatenate([part.variance for part in parts]),
-        np.concatenate([part.channel for part in parts]),
-        np.concatenate(
+        residual=np.concatenate([part.residual for part in parts]),
+        nuisance=block_diag(*(part.nuisance for part in parts)),
+        variance=np.concatenate([part.variance for part in parts]),
+        channel=np.concatenate([part.channel for part in parts]),
+        mode=np.concatenate(
             [
                 np.where(part.mode < 0, -1, part.mode + first)
                 for part, first in zip(parts, modes, strict=False)
             ]
         ),
-        np.concatenate(
+        source=np.concatenate(
             [
                 np.where(part.source < 0, -1, part.source + first)
                 for part, first in zip(parts, sources, strict=False)
             ]
         ),
-        tuple(p for part in parts for p in part.predictions),
-        max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
-        np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
-        np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
-        _filled([(part.idealised, len(part.residual)) for part in parts], 0.0),
-        _filled([(part.idle, len(part.residual)) for part in parts], False),
-        _filled([(part.unseen, len(part.residual)) for part in parts], 0.0),
+        predictions=tuple(p for part in parts for p in part.predictions),
+        scale_prior=max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
+        doubts=np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
+        tolerances=np.concatenate(
+            [part.tolerances + first for part, first in zip(parts, starts, strict=False)]
+        ),
+        idealised=_filled([(part.idealised, len(part.residual)) for part in parts], 0.0),
+        idle=_filled([(part.idle, len(part.residual)) for part in parts], False),
+        unseen=_filled([(part.unseen, len(part.residual)) for part in parts], 0.0),
     )

@@ -42,7 +42,7 @@ class Loss:
     power: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class State(Displayed):
     """What differs from the nominal model and the nominal measurement.
 
@@ -121,28 +121,28 @@ class State(Displayed):
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
         return State(
-            MappingProxyType(_multiplied(self.factors, other.factors)),
-            MappingProxyType(_multiplied(self.regional, other.regional)),
-            MappingProxyType({**self.dampers, **other.dampers}),
-            self.ratios if other.ratios is None else other.ratios,
-            self.stiffness + other.stiffness,
-            self.mass + other.mass,
-            self.damping + other.damping,
-            self.released | other.released,
-            other.theory or self.theory,
-            self.gain * other.gain,
-            self.decay + other.decay,
-            self.losses + other.losses,
-            self.delay + other.delay,
-            MappingProxyType(_multiplied(self.point_gains, other.point_gains)),
-            self.exchanged + other.exchanged,
-            MappingProxyType({**self.moved, **other.moved}),
-            self.slope + other.slope,
-            self.per_newton + other.per_newton,
-            MappingProxyType({**self.fluid, **other.fluid}),
-            self.absorbers + other.absorbers,
-            MappingProxyType(together(self.yielding, other.yielding)),
-            self.drift + other.drift,
+            factors=MappingProxyType(_multiplied(self.factors, other.factors)),
+            regional=MappingProxyType(_multiplied(self.regional, other.regional)),
+            dampers=MappingProxyType({**self.dampers, **other.dampers}),
+            ratios=self.ratios if other.ratios is None else other.ratios,
+            stiffness=self.stiffness + other.stiffness,
+            mass=self.mass + other.mass,
+            damping=self.damping + other.damping,
+            released=self.released | other.released,
+            theory=other.theory or self.theory,
+            gain=self.gain * other.gain,
+            decay=self.decay + other.decay,
+            losses=self.losses + other.losses,
+            delay=self.delay + other.delay,
+            point_gains=MappingProxyType(_multiplied(self.point_gains, other.point_gains)),
+            exchanged=self.exchanged + other.exchanged,
+            moved=MappingProxyType({**self.moved, **other.moved}),
+            slope=self.slope + other.slope,
+            per_newton=self.per_newton + other.per_newton,
+            fluid=MappingProxyType({**self.fluid, **other.fluid}),
+            absorbers=self.absorbers + other.absorbers,
+            yielding=MappingProxyType(together(self.yielding, other.yielding)),
+            drift=self.drift + other.drift,
         )
 
 

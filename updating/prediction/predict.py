@@ -202,21 +202,21 @@ class Predictor(Displayed):
         product = read.product(whole["w"], whole["w"])
         constants, phase = (product, None) if damped_modes is None else self._made_real(product)
         return Prediction(
-            moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi),
-            self._damping(total, values[chosen], vectors[:, chosen])
+            frequency=moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi),
+            damping=self._damping(total, values[chosen], vectors[:, chosen])
             if damped_modes is None
             else damped_modes.ratio,
-            level * constants,
-            shapes["w"][read.seen],
-            read.at_hit(shapes["w"], 1.0),
-            np.stack([shapes[n][read.seen] for n in axes]),
-            np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
-            by.T,
-            level[:, :, None] * _change(shapes["w"], changes, read),
-            np.real(modes),
-            total.slope + _gained(total, values[chosen], moving[:, chosen]),
-            np.asarray(level),
-            phase,
+            constants=level * constants,
+            seen=shapes["w"][read.seen],
+            hit=read.at_hit(shapes["w"], 1.0),
+            seen_slopes=np.stack([shapes[n][read.seen] for n in axes]),
+            hit_slopes=np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
+            log_frequency_by=by.T,
+            constants_by=level[:, :, None] * _change(shapes["w"], changes, read),
+            vectors=np.real(modes),
+            slope=total.slope + _gained(total, values[chosen], moving[:, chosen]),
+            gain=np.asarray(level),
+            phase=phase,
         )
 
     def _chosen(self, values: FloatArray, count: int | None, at_least: int) -> IntArray:

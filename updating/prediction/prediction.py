@@ -11,7 +11,7 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.display import Displayed
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Prediction(Displayed):
     """Modes of a model at the points of a test.
 
@@ -59,19 +59,19 @@ class Prediction(Displayed):
     def select(self, modes: IntArray) -> Prediction:
         """Return some of the modes, in the order given."""
         return Prediction(
-            self.frequency[modes],
-            self.damping[modes],
-            self.constants[:, modes],
-            self.seen[:, modes],
-            self.hit[:, modes],
-            self.seen_slopes[:, :, modes],
-            self.hit_slopes[:, :, modes],
-            self.log_frequency_by[modes],
-            self.constants_by[:, modes],
-            self.vectors[:, modes],
-            self.slope[modes],
-            self.gain[:, modes],
-            None if self.phase is None else self.phase[:, modes],
+            frequency=self.frequency[modes],
+            damping=self.damping[modes],
+            constants=self.constants[:, modes],
+            seen=self.seen[:, modes],
+            hit=self.hit[:, modes],
+            seen_slopes=self.seen_slopes[:, :, modes],
+            hit_slopes=self.hit_slopes[:, :, modes],
+            log_frequency_by=self.log_frequency_by[modes],
+            constants_by=self.constants_by[:, modes],
+            vectors=self.vectors[:, modes],
+            slope=self.slope[modes],
+            gain=self.gain[:, modes],
+            phase=None if self.phase is None else self.phase[:, modes],
         )
 
     @cached_property

@@ -53,7 +53,7 @@ from updating.thresholds import (
 from updating.tolerances import Tolerances
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SpecimenProblem:
     """A test, a model, and all that is doubted about either.
 

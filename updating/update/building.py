@@ -84,14 +84,14 @@ def build_specimen(
         predictor = predictor_of(replace(case, accepted=kept))
     model = UpdatedModel(predictor.for_test(paired.measured), parameter_set)
     return Specimen(
-        case.title,
-        model,
-        Nominal(model, paired.measured, paired.order, level),
-        paired.measured,
-        number,
-        paired.order,
-        (*case.measured.warnings, *paired.warnings),
-        np.ones(len(number)),
+        title=case.title,
+        model=model,
+        nominal=Nominal(model, paired.measured, paired.order, level),
+        measured=paired.measured,
+        number=number,
+        order=paired.order,
+        warnings=(*case.measured.warnings, *paired.warnings),
+        correction=np.ones(len(number)),
     )
 
 

@@ -21,7 +21,7 @@ MOST = 12
 """Most correlations listed."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Update(Shown):
     """An updated model.
 

@@ -35,7 +35,7 @@ NO_SEVERITY = "the forecast knows no severity of it on such a model"
 """Why an effect of the library, or one of a user's own, is left out."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class OwnBench:
     """A study's own model and its test.
 

@@ -80,21 +80,21 @@ def bench_of(study: Study) -> OwnBench:
     layout = layout_of(test.measured, candidates(test.predictor, ranks, test.measured.points))
     blank = test.predictor.for_test(layout.blank)
     data = imagined(layout, blank, ranks, test.known.of(len(ranks)))
-    problem = Tracked(blank.for_test(data), data, test.tolerances, ranks)
+    problem = Tracked(predictor=blank.for_test(data), measured=data, tolerances=test.tolerances, order=ranks)
     around = study.surroundings().fluid_density
     without = ("fluid_added_mass", "fluid_damping") if around is not None and around < GAS else ()
     design = _design(study, test, layout, problem)
     return OwnBench(
-        study,
-        problem,
-        layout,
-        ranks,
-        design,
-        test.band,
-        test.hits,
-        (*test.statement, *_on_damping(design), *where_supports_are(test.predictor)),
-        tuple(_left_out(study)),
-        without,
+        study=study,
+        problem=problem,
+        layout=layout,
+        ranks=ranks,
+        design=design,
+        band=test.band,
+        hits=test.hits,
+        statement=(*test.statement, *_on_damping(design), *where_supports_are(test.predictor)),
+        left_out=tuple(_left_out(study)),
+        without=without,
     )
 
 

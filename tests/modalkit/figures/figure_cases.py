@@ -145,12 +145,12 @@ def ranking_of(first: str) -> tuple[Ranked, ...]:
     long = {f"{first}.{n}": replace(estimate, unit="m") for n in ("x", "extent", "loss", "compliance")}
     return tuple(
         Ranked(
-            (e,),
-            float(p),
-            (),
-            long if i == 0 and e == "local_stiffness" else {f"{e}.mass": estimate},
-            True,
-            0.4,
+            effects=(e,),
+            probability=float(p),
+            equivalents=(),
+            parameters=long if i == 0 and e == "local_stiffness" else {f"{e}.mass": estimate},
+            plausible=True,
+            p_value=0.4,
         )
         for i, (e, p) in enumerate(zip(order, share_of, strict=True))
     )
@@ -186,27 +186,37 @@ def diagnosis_of(
     seated = place if verdict != "none" else None
     channel = "none" if verdict == "none" else "stiffness"
     where = Where(
-        channel,
-        {"stiffness": 0.9, "mass": 0.08, "damping": 0.0, "measurement": 0.02, "none": 0.0},
-        seated,
-        () if seated is None else (seated,),
-        (),
-        zones,
+        channel=channel,
+        channels={"stiffness": 0.9, "mass": 0.08, "damping": 0.0, "measurement": 0.02, "none": 0.0},
+        location=seated,
+        locations=() if seated is None else (seated,),
+        points=(),
+        zones=zones,
     )
     measure = "weigh the specimen and measure its thickness, to 0.1 %"
     return Diagnosis(
-        "A cantilever",
-        verdict != "none",
-        0.4 if verdict == "none" else 1e-12,
-        Gap(table, 3.2, 0.1, np.ones(3)),
-        where,
-        Shrink("frequency", 3.2, 0.05, 3.2, 0.07, 2.1, 2.4, 0.06, Closed(99.0, 95.0, 100.0)),
-        verdict,  # type: ignore[arg-type]
-        tuple(r.effects for r in ranking[:count]),
-        ranking,
-        (NextTest(measure, ("E", "density"), 31.0), NextTest(measure, ("E", "thickness"), 12.0))
+        title="A cantilever",
+        significant=verdict != "none",
+        p_value=0.4 if verdict == "none" else 1e-12,
+        gap=Gap(table, 3.2, 0.1, np.ones(3)),
+        where=where,
+        shrink=Shrink(
+            metric="frequency",
+            before=3.2,
+            after=0.05,
+            held_before=3.2,
+            held_after=0.07,
+            held_runner_up=2.1,
+            held_nuisance=2.4,
+            floor=0.06,
+            closed=Closed(99.0, 95.0, 100.0),
+        ),
+        verdict=verdict,  # type: ignore[arg-type]
+        sets=tuple(r.effects for r in ranking[:count]),
+        ranking=ranking,
+        next_test=(NextTest(measure, ("E", "density"), 31.0), NextTest(measure, ("E", "thickness"), 12.0))
         if verdict == "class"
         else (),
-        (),
-        {},
+        warnings=(),
+        not_examined={},
     )

@@ -77,7 +77,14 @@ def test_a_parameter_is_written_whole_or_not_at_all() -> None:
 
 def test_errors_before_and_after_are_those_of_the_modulus() -> None:
     case = case_of("beam", factor=0.9, modes=2)  # which this mesh leaves no doubt in
-    row = Ranked(("E",), 0.9, (), {"E.factor": ParameterEstimate(0.9, "-", 0.89, 0.91, False)}, True, 0.5)
+    row = Ranked(
+        effects=("E",),
+        probability=0.9,
+        equivalents=(),
+        parameters={"E.factor": ParameterEstimate(0.9, "-", 0.89, 0.91, False)},
+        plausible=True,
+        p_value=0.5,
+    )
     errors = mode_errors(replace(diagnosis_of("beam", first="E"), ranking=(row,)), case)
     assert errors.before == pytest.approx(100 * (1 / np.sqrt(0.9) - 1), abs=1e-6)
     assert errors.after is not None

@@ -43,7 +43,14 @@ def ranked(
 ) -> Ranked:
     """Return a row of the ranking; parameters as ``effect__name``."""
     own = {name.replace("__", "."): estimate for name, estimate in parameters.items()}
-    return Ranked(effects, probability, (), own, plausible, p_value)
+    return Ranked(
+        effects=effects,
+        probability=probability,
+        equivalents=(),
+        parameters=own,
+        plausible=plausible,
+        p_value=p_value,
+    )
 
 
 def where(channel: str, channels: dict[str, float], **more: object) -> Where:
@@ -372,14 +379,14 @@ def test_a_share_from_nothing_to_all_is_not_stated(low: float, high: float, stat
 def test_a_mirrored_region_stands_in_the_cause(verdict: str) -> None:
     """Softer columns of the first storey and of the third shift the modes of a symmetric frame alike."""
     soft = Ranked(
-        ("local_stiffness",),
-        0.9,
-        (),
-        {"local_stiffness.loss": ParameterEstimate(0.4, "-", 0.3, 0.5, False)},
-        True,
-        0.4,
-        ({"region": "storey_3"},),
-        (({"region": "storey_1"},),),
+        effects=("local_stiffness",),
+        probability=0.9,
+        equivalents=(),
+        parameters={"local_stiffness.loss": ParameterEstimate(0.4, "-", 0.3, 0.5, False)},
+        plausible=True,
+        p_value=0.4,
+        forms=({"region": "storey_3"},),
+        other_forms=(({"region": "storey_1"},),),
     )
     sets = (("local_stiffness",), ("E",))[: 1 + (verdict == "class")]
     line = summary_text(replace(NAMED, verdict=verdict, sets=sets, ranking=(soft, E)))[0]  # type: ignore[arg-type]

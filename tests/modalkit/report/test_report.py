@@ -192,7 +192,14 @@ def test_tables_can_be_reached_and_read_aloud(tmp_path: Path) -> None:
 
 def test_the_answer_is_marked_with_its_interval(tmp_path: Path) -> None:
     estimate = ParameterEstimate(0.0121, "kg", 0.0115, 0.0126, False)
-    row = Ranked(("sensor_mass",), 0.97, (("lumped_mass",),), {"sensor_mass.mass": estimate}, True, 0.4)
+    row = Ranked(
+        effects=("sensor_mass",),
+        probability=0.97,
+        equivalents=(("lumped_mass",),),
+        parameters={"sensor_mass.mass": estimate},
+        plausible=True,
+        p_value=0.4,
+    )
     made = complete(diagnosis_with("beam", "named"))
     stated = replace(made, ranking=(row, *made.ranking[1:]), sets=(("sensor_mass",),))
     page = diagnosis_report(stated, [session_of("beam", tmp_path)], when=NOON)
@@ -203,7 +210,17 @@ def test_the_answer_is_marked_with_its_interval(tmp_path: Path) -> None:
 def test_errors_of_all_data_are_told_in_standard_deviations(tmp_path: Path) -> None:
     made = complete(diagnosis_with("beam", "named"))
     shrink = Shrink(
-        "combined", 2500.0, 120.0, 2500.0, 150.0, None, 900.0, 100.0, None, 9.0, HeldPoints(40.0, 3.0, 20.0)
+        metric="combined",
+        before=2500.0,
+        after=120.0,
+        held_before=2500.0,
+        held_after=150.0,
+        held_runner_up=None,
+        held_nuisance=900.0,
+        floor=100.0,
+        closed=None,
+        stretch=9.0,
+        points=HeldPoints(40.0, 3.0, 20.0),
     )
     text = Reader(
         diagnosis_report(replace(made, shrink=shrink), [session_of("beam", tmp_path)], when=NOON)
@@ -255,7 +272,9 @@ def test_several_specimens_have_a_gap_each(tmp_path: Path) -> None:
         f"E.factor ({t})": ParameterEstimate(f, "-", 0.8, 1.2, False)
         for t, f in (("first", 0.9), ("second", 1.1))
     }
-    row = Ranked(("E",), 0.99, (), own, True, 0.4)  # type: ignore[arg-type]
+    row = Ranked(
+        effects=("E",), probability=0.99, equivalents=(), parameters=own, plausible=True, p_value=0.4
+    )  # type: ignore[arg-type]
     made = complete(replace(diagnosis_with("beam", "named"), ranking=(row,), sets=(row.effects,)), "first")
     modes = pd.concat([made.gap.modes, made.gap.modes.assign(study="second")])
     stated = replace(made, gap=replace(made.gap, modes=modes))
@@ -276,7 +295,14 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
         "fluid_added_mass.free_surface": ParameterEstimate(0.102, "m", 0.00628, 0.8, False),
         "fluid_added_mass.bottom": ParameterEstimate(0.0276, "m", 0.00323, 0.864, False),
     }
-    row = Ranked(("fluid_added_mass",), 0.99, (), estimates, True, 0.4)
+    row = Ranked(
+        effects=("fluid_added_mass",),
+        probability=0.99,
+        equivalents=(),
+        parameters=estimates,
+        plausible=True,
+        p_value=0.4,
+    )
     stated = complete(replace(made, ranking=(row,), sets=(row.effects,)), session.case.title)
     page = diagnosis_report(stated, [session], when=NOON)
     found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)

@@ -143,7 +143,18 @@ def comparison(seed: int, n: int = 24, p: int = 5, *, residual: bool = False) ->
         size = nuisance @ rng.standard_normal(p) + noise
     mode = np.tile(np.arange(n // 3), 3)
     prior, none = REPEATED_SCATTER_PRIOR, np.full(n, -1)
-    return Comparison(size, nuisance, variance, channel, mode, none, (), prior, np.arange(2), np.arange(0))
+    return Comparison(
+        residual=size,
+        nuisance=nuisance,
+        variance=variance,
+        channel=channel,
+        mode=mode,
+        source=none,
+        predictions=(),
+        scale_prior=prior,
+        doubts=np.arange(2),
+        tolerances=np.arange(0),
+    )
 
 
 def full(data: Comparison, scale: float, keep: np.ndarray) -> np.ndarray:

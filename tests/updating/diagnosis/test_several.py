@@ -229,7 +229,12 @@ def test_of_matrices_places_are_those_of_the_specimen_on_which_the_cause_acts() 
         explain(problem, Candidate(effects, chosen=forms), laplace_only=True)
         for effects, forms in (((spring,), (point,)), ((spring,), (tip,)), ((), ()))
     )
-    rows = Compared(one, 1.0, 0.5, 0.5, forms=((one, 0.6), (other, 0.4))), Compared(nothing, 0.0, 0.0, 0.0)
+    rows = (
+        Compared(
+            explanation=one, probability=1.0, p_value=0.5, as_stated=0.5, forms=((one, 0.6), (other, 0.4))
+        ),
+        Compared(explanation=nothing, probability=0.0, p_value=0.0, as_stated=0.0),
+    )
     found = _locate(problem, Search(nothing, rows, {}), "named")
     assert found.locations == (pytest.approx(bare.measured.points[2]),)
 

@@ -63,16 +63,16 @@ def test_bounds_do_not_touch_what_stays_within_them() -> None:
     from types import SimpleNamespace
 
     one = Comparison(
-        residual,
-        columns,
-        np.ones(8),
-        np.zeros(8, dtype=int),
-        np.arange(8),
-        np.full(8, -1),
-        (SimpleNamespace(),),
-        (1.0,),
-        np.arange(2),
-        np.arange(0),
+        residual=residual,
+        nuisance=columns,
+        variance=np.ones(8),
+        channel=np.zeros(8, dtype=int),
+        mode=np.arange(8),
+        source=np.full(8, -1),
+        predictions=(SimpleNamespace(),),
+        scale_prior=(1.0,),
+        doubts=np.arange(2),
+        tolerances=np.arange(0),
     )
     ridge = np.linalg.solve(np.eye(2) + columns.T @ columns, columns.T @ residual)
     assert believed(one, 1.0) == pytest.approx(residual - columns @ ridge)
@@ -109,16 +109,16 @@ def test_a_turned_mode_is_off_by_its_angle_in_all_constants() -> None:
 
     channel = np.array([0, 2, 2, 2, 2, 3])
     one = Comparison(
-        np.zeros(6),
-        np.zeros((6, 0)),
-        np.ones(6),
-        channel,
-        np.zeros(6, dtype=int),
-        np.full(6, -1),
-        (SimpleNamespace(),),
-        (1.0,),
-        np.arange(0),
-        np.arange(0),
+        residual=np.zeros(6),
+        nuisance=np.zeros((6, 0)),
+        variance=np.ones(6),
+        channel=channel,
+        mode=np.zeros(6, dtype=int),
+        source=np.full(6, -1),
+        predictions=(SimpleNamespace(),),
+        scale_prior=(1.0,),
+        doubts=np.arange(0),
+        tolerances=np.arange(0),
     )
     turned = squares(np.array([0.5, 0.0, 0.0, 0.0, 0.0, 0.02]), one, "frf")
     assert turned.rms == pytest.approx(0.02)

@@ -20,16 +20,16 @@ def comparison(residual: np.ndarray, shift: float, *, size: float = 0.05) -> Com
     """Frequencies of an effect that shifts them so far; its own size makes up for errors of the whole shift."""
     each = np.full(MODES, 0.05 * shift)
     return Comparison(
-        residual,
-        np.full((MODES, 1), size),
-        NOISE**2 + each**2,
-        np.zeros(MODES, dtype=int),
-        np.arange(MODES),
-        np.full(MODES, -1),
-        (),
-        (1.0,),
-        np.arange(0),
-        np.arange(0),
+        residual=residual,
+        nuisance=np.full((MODES, 1), size),
+        variance=NOISE**2 + each**2,
+        channel=np.zeros(MODES, dtype=int),
+        mode=np.arange(MODES),
+        source=np.full(MODES, -1),
+        predictions=(),
+        scale_prior=(1.0,),
+        doubts=np.arange(0),
+        tolerances=np.arange(0),
         idealised=each**2,
     )
 

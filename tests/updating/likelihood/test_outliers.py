@@ -29,16 +29,16 @@ def comparison(seed: int, *, off: dict[int, float] | None = None) -> Comparison:
     for i, sigmas in (off or {}).items():
         residual[i] += sigmas
     return Comparison(
-        residual,
-        nuisance,
-        np.ones(len(channel)),
-        channel,
-        mode,
-        source,
-        (),
-        (1.0, 1e-12, 1e-12, 1e-12, 1e-12),
-        np.arange(2),
-        np.arange(1),
+        residual=residual,
+        nuisance=nuisance,
+        variance=np.ones(len(channel)),
+        channel=channel,
+        mode=mode,
+        source=source,
+        predictions=(),
+        scale_prior=(1.0, 1e-12, 1e-12, 1e-12, 1e-12),
+        doubts=np.arange(2),
+        tolerances=np.arange(1),
     )
 
 

@@ -34,9 +34,11 @@ def comparison(pattern: Pattern, seed: int) -> Comparison:
     nuisance = np.hstack(columns)
     channel = np.repeat([CHANNELS.index("frequency"), CHANNELS.index("frf")], [modes, frfs * modes])
     return Comparison(
-        rng.standard_normal(n), nuisance[:, rng.permutation(nuisance.shape[1])], rng.uniform(0.01, 0.1, n), channel,
-        np.tile(np.arange(modes), 1 + frfs), np.repeat(np.arange(-1, frfs), modes), (),
-        tuple(np.full(len(SHAPE_NOISE_SCALES), 1 / len(SHAPE_NOISE_SCALES))), np.arange(1), np.arange(1),
+        residual=rng.standard_normal(n), nuisance=nuisance[:, rng.permutation(nuisance.shape[1])],
+        variance=rng.uniform(0.01, 0.1, n), channel=channel,
+        mode=np.tile(np.arange(modes), 1 + frfs), source=np.repeat(np.arange(-1, frfs), modes), predictions=(),
+        scale_prior=tuple(np.full(len(SHAPE_NOISE_SCALES), 1 / len(SHAPE_NOISE_SCALES))), doubts=np.arange(1),
+        tolerances=np.arange(1),
     )  # fmt: skip
 
 

@@ -269,7 +269,10 @@ def test_regions_of_imported_matrices_are_weighed_too() -> None:
 def test_areas_and_places_of_a_plate() -> None:
     measured = replace(blank(np.array([[0.376, 0.2]])), constants=np.ones((1, 2)))
     problem = SpecimenProblem(
-        Predictor(PLATE, measured), measured, case_of(measured).tolerances, np.arange(2)
+        predictor=Predictor(PLATE, measured),
+        measured=measured,
+        tolerances=case_of(measured).tolerances,
+        order=np.arange(2),
     )
     assert areas(problem) == pytest.approx(np.full(15, 1 / 15))
     assert boxes(PLATE)[0, :2] == pytest.approx(np.array([[0, 0.0752], [0, 0.2 / 3]]))

@@ -69,7 +69,11 @@ def test_frequencies_may_be_higher_by_it_and_a_beam_of_no_width_by_nothing() -> 
     predictor = Predictor(beam(0.04), test)
     order = np.arange(len(test.frequency))
     problem = SpecimenProblem(
-        predictor, test, Tolerances(), order, theory_error=theory_error(predictor, order)
+        predictor=predictor,
+        measured=test,
+        tolerances=Tolerances(),
+        order=order,
+        theory_error=theory_error(predictor, order),
     )
     nuisance = problem.at(Candidate(), np.zeros(0)).nuisance
     assert any(np.allclose(column[order], stiffening(predictor.spec, order)) for column in nuisance.T)

@@ -106,7 +106,7 @@ class ParameterEstimate:
         return quantity(self.value, self.unit) if isinstance(self.value, float) else str(self)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Ranked(Displayed):
     """One set of effects with its probability.
 
@@ -177,7 +177,7 @@ class LikelyPlace:
     probability: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Where(Displayed):
     """Where the cause sits.
 
@@ -255,7 +255,7 @@ class HeldPoints:
     nuisance: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Shrink(Displayed):
     """How far the gap shrinks, on the data fitted and on modes held out in turn [%].
 
@@ -348,7 +348,7 @@ class NextTest(Displayed):
     whole: bool = True
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Diagnosis(Shown):
     """The whole answer.
 

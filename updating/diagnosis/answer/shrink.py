@@ -57,17 +57,17 @@ def shrinkage(
     fitted = best.best.left_over if alone is None else believed(alone, best.best.marginal.scale)
     floor = noise_squares(problem.specimens, plain, metric, odd=odd)
     return Shrink(
-        metric,
-        100 * before.rms,
-        100 * counted(fitted).rms,
-        100 * before.rms,
-        100 * after.rms,
-        None if runner_up is None else 100 * held(runner_up).rms,
-        100 * held(nothing).rms,
-        100 * floor.rms,
-        closed(before, after, floor, rng),
-        _stretch(nothing),
-        _points(problem, nothing, best, plain, metric),
+        metric=metric,
+        before=100 * before.rms,
+        after=100 * counted(fitted).rms,
+        held_before=100 * before.rms,
+        held_after=100 * after.rms,
+        held_runner_up=None if runner_up is None else 100 * held(runner_up).rms,
+        held_nuisance=100 * held(nothing).rms,
+        floor=100 * floor.rms,
+        closed=closed(before, after, floor, rng),
+        stretch=_stretch(nothing),
+        points=_points(problem, nothing, best, plain, metric),
     )
 
 

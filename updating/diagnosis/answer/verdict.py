@@ -214,19 +214,19 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
     total = sum(row.probability for row in found.compared)
     return tuple(
         Ranked(
-            row.names,
-            row.probability / total,
-            tuple(o.names for o in rows if o is not row and _close(row, o)),
-            estimates(
+            effects=row.names,
+            probability=row.probability / total,
+            equivalents=tuple(o.names for o in rows if o is not row and _close(row, o)),
+            parameters=estimates(
                 problem,
                 row.explanation,
                 row.extreme,
                 most=_samples_taken(row),
             ),
-            not row.extreme,
-            row.p_value,
-            _fixed(row.explanation),
-            tuple(_fixed(one) for one, _ in row.forms[1:] if one.names == row.names),
+            plausible=not row.extreme,
+            p_value=row.p_value,
+            forms=_fixed(row.explanation),
+            other_forms=tuple(_fixed(one) for one, _ in row.forms[1:] if one.names == row.names),
         )
         for row in rows
     )

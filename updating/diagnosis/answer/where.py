@@ -47,7 +47,16 @@ def locate(
     if verdict == "none":
         zones = _zones(problem, _by_explanations(problem, found))
         stated = {**shares, "none": nothing}
-        return Where("none", stated, None, (), (), zones, modes=seen.modes, band=seen.summary)
+        return Where(
+            channel="none",
+            channels=stated,
+            location=None,
+            locations=(),
+            points=(),
+            zones=zones,
+            modes=seen.modes,
+            band=seen.summary,
+        )
     together = acting_together(shares)
     top = together[0]
     leader = next((row for row in found.compared if row.names), None)
@@ -56,18 +65,18 @@ def locate(
     unknown = verdict == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
-        top,
-        {**shares, "none": nothing},
-        places[0] if places else None,
-        places,
-        _points(problem, leader) or _nearest(problem, likely_places),
-        _zones(problem, probability),
-        "regions" if unknown else "explanations",
-        tuple(LikelyPlace(_place(c.place), _place(c.spread), c.weight) for c in likely_places),
-        seen.modes,
-        seen.summary,
-        _nearest(problem, likely_places),
-        _names(leader),
+        channel=top,
+        channels={**shares, "none": nothing},
+        location=places[0] if places else None,
+        locations=places,
+        points=_points(problem, leader) or _nearest(problem, likely_places),
+        zones=_zones(problem, probability),
+        zones_by="regions" if unknown else "explanations",
+        likely_places=tuple(LikelyPlace(_place(c.place), _place(c.spread), c.weight) for c in likely_places),
+        modes=seen.modes,
+        band=seen.summary,
+        nearest=_nearest(problem, likely_places),
+        names=_names(leader),
     )
 
 

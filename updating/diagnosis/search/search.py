@@ -48,7 +48,7 @@ BENEATH = "what it changes of a plate is computed, and put under every set of ca
 """Why a plate's theory is not weighed as a cause."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Compared:
     """An explanation with its share of the probability and how well it fits.
 
@@ -267,7 +267,16 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
         shared = _by_form(own, probability)
         regions = _by_region(own, total)
         merged.append(
-            Compared(whole, probability, fits, stated, extreme, regions, without[set_aside], shared)
+            Compared(
+                explanation=whole,
+                probability=probability,
+                p_value=fits,
+                as_stated=stated,
+                extreme=extreme,
+                regions=regions,
+                without=without[set_aside],
+                forms=shared,
+            )
         )
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
@@ -313,7 +322,10 @@ def _compare(found: list[Explanation]) -> list[Compared]:
     score = np.array([e.log_evidence + log_prior(len(e.names), examined) for e in found])
     probability = np.exp(score - logsumexp(score))
     stated = [0.0 if e.candidate.outliers else e.p_value for e in found]
-    return [Compared(e, float(p), e.p_value, s) for e, p, s in zip(found, probability, stated, strict=True)]
+    return [
+        Compared(explanation=e, probability=float(p), p_value=e.p_value, as_stated=s)
+        for e, p, s in zip(found, probability, stated, strict=True)
+    ]
 
 
 def _beneath(problem: DiagnosisProblem) -> bool:

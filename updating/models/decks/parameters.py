@@ -37,7 +37,7 @@ USUAL = (0.05, 20.0)
 """Bounds of factors on masses [-]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DeckParameter:
     """A number of a deck, and how the matrices follow it.
 
@@ -154,17 +154,17 @@ def _thickness(mesh: Mesh, name: str, kind: str, elements: frozenset[int], lengt
         )  # fmt: skip
 
     return DeckParameter(
-        name,
-        kind,
-        "m",
-        nominal * length,
-        True,
-        GAUGES[0],
-        GAUGES[-1],
-        GAUGES,
-        (-1, 0, 1, 2, 3),
-        changed,
-        elements & frozenset[int]().union(*(s.elements for s in own)),
+        name=name,
+        kind=kind,
+        unit="m",
+        nominal=nominal * length,
+        relative=True,
+        low=GAUGES[0],
+        high=GAUGES[-1],
+        samples=GAUGES,
+        powers=(-1, 0, 1, 2, 3),
+        changed=changed,
+        elements=elements & frozenset[int]().union(*(s.elements for s in own)),
     )
 
 
@@ -191,7 +191,18 @@ def _point(mesh: Mesh, name: str, head: str, kind: str, unit: float) -> DeckPara
 
     low, high = WIDE if kind == "stiffness" else USUAL
     symbol = {"stiffness": "N/m", "mass": "kg"}[kind]
-    return DeckParameter(name, kind, symbol, nominal * unit, True, low, high, (1.0, 2.0), (0, 1), changed)
+    return DeckParameter(
+        name=name,
+        kind=kind,
+        unit=symbol,
+        nominal=nominal * unit,
+        relative=True,
+        low=low,
+        high=high,
+        samples=(1.0, 2.0),
+        powers=(0, 1),
+        changed=changed,
+    )
 
 
 def _moved(mesh: Mesh, deck: Deck, name: str, head: str, axis: str, length: float) -> DeckParameter:
@@ -218,8 +229,9 @@ def _moved(mesh: Mesh, deck: Deck, name: str, head: str, axis: str, length: floa
 
     samples = tuple((ends * np.array([-1.0, -0.6, 0.0, 0.6, 1.0])).tolist())
     return DeckParameter(
-        name, axis, "m", 1.0, False, -ends, ends, samples, (0, 1, 2, 3, 4), changed,
-        _reshaped(mesh, moved.keys()), scale=ends,
+        name=name, kind=axis, unit="m", nominal=1.0, relative=False, low=-ends, high=ends, samples=samples,
+        powers=(0, 1, 2, 3, 4), changed=changed,
+        elements=_reshaped(mesh, moved.keys()), scale=ends,
     )  # fmt: skip
 
 

@@ -26,7 +26,7 @@ STEP = 1e-4
 """Step of the differences, relative to the width of a parameter's range [-]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Specimen:
     """A test, its model and the parameters to be updated.
 
@@ -105,9 +105,11 @@ class Specimen:
         constants = self._gain * seen * hit
         nothing = np.zeros((0, *constants.shape))
         return Prediction(
-            frequency, np.full(len(frequency), np.nan), constants, seen, hit, nothing, nothing,
-            np.zeros((len(frequency), 0)), np.zeros((*constants.shape, 0)), vectors,
-            np.zeros(len(frequency)), np.broadcast_to(self._gain, constants.shape),
+            frequency=frequency, damping=np.full(len(frequency), np.nan), constants=constants, seen=seen, hit=hit,
+            seen_slopes=nothing, hit_slopes=nothing,
+            log_frequency_by=np.zeros((len(frequency), 0)), constants_by=np.zeros((*constants.shape, 0)),
+            vectors=vectors,
+            slope=np.zeros(len(frequency)), gain=np.broadcast_to(self._gain, constants.shape),
         )  # fmt: skip
 
     def slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:

@@ -49,7 +49,7 @@ def only_damps(name: str) -> bool:
     return name.rpartition(".")[2] in DAMPERS
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ModelParameter:
     """One parameter of one specimen, and how it enters the model.
 
@@ -299,8 +299,9 @@ def _number(number: DeckParameter, tolerances: Tolerances) -> ModelParameter:
     tolerance = tolerances.of(number.name, general)
     width = UNTOLD if number.relative else (number.high - number.low) / np.sqrt(12)
     found = ModelParameter(
-        number.name, number.unit, number.nominal, number.start, number.low, number.high, float(tolerance or width),
-        tolerance > 0, log=number.relative, of_deck=number,
+        name=number.name, unit=number.unit, nominal=number.nominal, start=number.start, low=number.low,
+        high=number.high, doubt=float(tolerance or width),
+        tolerated=tolerance > 0, log=number.relative, of_deck=number,
     )  # fmt: skip
     return _bounded(found, tolerances)
 
@@ -392,7 +393,8 @@ def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int
     omega = 2 * np.pi * predictor.measured.frequency
     scale = MIDDLING * {"alpha": 2 * omega.min(), "beta": 2 / omega.max(), "loss_factor": 2.0}[coefficient]
     return ModelParameter(
-        name, DAMPERS[coefficient], 1.0, float(given or 0.0), 0.0, MOST * scale, scale, tolerated=False,
+        name=name, unit=DAMPERS[coefficient], nominal=1.0, start=float(given or 0.0), low=0.0, high=MOST * scale,
+        doubt=scale, tolerated=False,
         log=False, damper=coefficient, regions=places,
     )  # fmt: skip
 
@@ -403,7 +405,17 @@ def _factor(
     low, high = FACTOR_RANGE
     doubt = tolerance or UNTOLD
     return ModelParameter(
-        name, unit, nominal, 1.0, low, high, doubt, tolerance > 0, log=True, factor=factor, regions=regions
+        name=name,
+        unit=unit,
+        nominal=nominal,
+        start=1.0,
+        low=low,
+        high=high,
+        doubt=doubt,
+        tolerated=tolerance > 0,
+        log=True,
+        factor=factor,
+        regions=regions,
     )
 
 
@@ -429,8 +441,9 @@ def _effect(
         )
         width = np.log(high / low) if log else high - low
         model_parameter = ModelParameter(
-            effect.name if alone else f"{effect.name}.{p.name}",
-            p.unit, 1.0, start, low, high, float(width / np.sqrt(12)), False, log,
+            name=effect.name if alone else f"{effect.name}.{p.name}",
+            unit=p.unit, nominal=1.0, start=start, low=low, high=high, doubt=float(width / np.sqrt(12)),
+            tolerated=False, log=log,
             effect=effect.name, parameter=p.name,
         )  # fmt: skip
         in_model = _in_model(model_parameter, effect.scales(predictor), tolerances)

@@ -17,7 +17,7 @@ SIGNIFICANT = 1e-3
 """A misfit less probable than this means that the model's error, not the measurement's, is what scatters."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Statistics:
     """Statistics of an update.
 
@@ -85,7 +85,16 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     couplings = tuple(replace(c, sigma=tuple(inflation * v for v in c.sigma)) for c in stated.couplings)
     stated = replace(stated, couplings=couplings)
     strain = _strain(system, theta)
-    return Statistics(covariance, undetermined, chi2, dof, inflation, stated, strain, beliefs)
+    return Statistics(
+        covariance=covariance,
+        undetermined=undetermined,
+        chi2=chi2,
+        dof=dof,
+        inflation=inflation,
+        determinability=stated,
+        strain=strain,
+        beliefs=beliefs,
+    )
 
 
 def _of_frequencies(system: System, linear: Linear) -> float:
