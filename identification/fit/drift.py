@@ -22,7 +22,7 @@ from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.refine import Fit, frequency_scores
 from identification.fit.equations.residues import synthesise
 from identification.fit.noise.common_spread import common_factors
-from identification.fit.noise.disagreement import scatter_beyond_noise
+from identification.fit.noise.disagreement import scatter_beyond_noise, student_widening
 from identification.fit.noise.weights import decay_over_record, left_over
 from identification.fit.noise.window_shaped import inflation
 
@@ -287,9 +287,8 @@ def _of_the_mean(information: FloatArray, variance: FloatArray, common: float) -
     total = information.sum(axis=0)
     share = np.sum((information / np.where(total > 0, total, 1.0)) ** 2, axis=0)
     signal = information.sum(axis=1)[:, None] * common if common > 0 else information * variance
-    freedom = np.maximum(np.sum(signal / (1.0 + signal), axis=0) - 1.0, 1.0)
-    wider = (stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)) ** 2
-    return np.asarray(np.clip(share, 1.0 / len(information), 1.0) * wider)
+    freedom = np.sum(signal / (1.0 + signal), axis=0) - 1.0
+    return np.asarray(np.clip(share, 1.0 / len(information), 1.0) * student_widening(freedom))
 
 
 def carried_over(frfs: FrfSet, fit: Fit, drift: Drift) -> FrfSet:

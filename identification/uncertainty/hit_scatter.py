@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
@@ -21,6 +20,7 @@ from identification.fit.equations import basis, normal_equations
 from identification.fit.equations.projection import pole_turns
 from identification.fit.equations.pruning import inverse_information
 from identification.fit.equations.refine import Fit
+from identification.fit.noise.disagreement import student_widening
 from identification.fit.poly_reference import sorted_frfs
 
 _PRIOR_FREEDOM = 10.0
@@ -207,7 +207,7 @@ def _shrunk(ratio: FloatArray, freedom: FloatArray, alike: float, *, wide: bool 
     pooled = (float(np.sum(freedom * ratio)) + _PRIOR_FREEDOM) / (total + _PRIOR_FREEDOM)
     borrowed = min(alike, total + _PRIOR_FREEDOM)
     known = freedom + borrowed
-    wider = (stats.t.ppf(0.975, known) / stats.norm.ppf(0.975)) ** 2 if wide else 1.0
+    wider = student_widening(known) if wide else 1.0
     return np.asarray(wider * (freedom * ratio + borrowed * pooled) / known)
 
 

@@ -19,7 +19,8 @@ class Disagreement:
     Parameters
     ----------
     mean : (n_modes, 2, 2) array
-        Variance it gives the common pole, (Re, Im) [rad^2/s^2].
+        Variance it gives the common pole, (Re, Im), widened so that 1.96 standard deviations are a 95 % interval
+        however few the FRFs are [rad^2/s^2].
     each : (n_frf, n_modes, 2, 2) array
         Variance of the pole of a single FRF about the one it was fitted with [rad^2/s^2].
     scatter : (n_modes, 2, 2) array
@@ -62,10 +63,29 @@ def between_frfs(gradient: FloatArray, normal: FloatArray, expected: FloatArray)
     seen = np.einsum("jnaa->jna", normal) > 0
     known = np.where(seen & (held > 0), held, np.inf)
     variance[real] = scatter_beyond_noise(own[:, real], known[:, real])
-    weight = np.einsum("jnaa->jn", normal)
-    share = np.sum(weight**2, axis=0) / np.maximum(weight.sum(axis=0) ** 2, np.finfo(float).tiny)
+    wider = student_widening(_count(1.0 / (known + variance)) - 1.0)
+    share = 1.0 / _count(np.einsum("jnaa->jn", normal))
     each = variance[:, :, None] * np.eye(2)
-    return Disagreement(each * np.minimum(share, 1.0)[:, None, None], np.tile(each, (n_frf, 1, 1, 1)), each)
+    mean = each * (wider * share[:, None])[:, :, None]
+    return Disagreement(mean, np.tile(each, (n_frf, 1, 1, 1)), each)
+
+
+def student_widening(freedom: FloatArray) -> FloatArray:
+    """Return by what factor a variance is raised so that 1.96 standard deviations are a 95 % interval of Student's [-].
+
+    Parameters
+    ----------
+    freedom : array
+        Degrees of freedom of the variance; under 1 counts as 1 [-].
+    """
+    ratio = stats.t.ppf(0.975, np.maximum(freedom, 1.0)) / stats.norm.ppf(0.975)
+    return np.asarray(ratio**2)
+
+
+def _count(weight: FloatArray) -> FloatArray:
+    """Return how many equal weights have the mean that weights along the first axis do, 1 or more (Kish, 1965) [-]."""
+    squares = np.maximum(np.sum(weight**2, axis=0), np.finfo(float).tiny)
+    return np.asarray(np.maximum(weight.sum(axis=0) ** 2 / squares, 1.0))
 
 
 def scatter_beyond_noise(values: FloatArray, variance: FloatArray) -> FloatArray:

@@ -63,3 +63,14 @@ def test_an_frf_at_a_node_has_no_say(rng):
     values, variance = rng.standard_normal((6, 2)), np.full((6, 2), 0.1)
     more = np.concatenate([values, [[1e6, -1e6]]]), np.concatenate([variance, [[np.inf, np.inf]]])
     np.testing.assert_allclose(scatter_beyond_noise(*more), scatter_beyond_noise(values, variance), rtol=1e-9)
+
+
+def test_few_frfs_that_disagree_have_intervals_of_students_t(rng):
+    draws, few, scatter = 4000, 4, 30.0
+    normal = np.tile(np.eye(2), (few, draws, 1, 1))
+    own = scatter * rng.standard_normal((few, draws, 2)) + rng.standard_normal((few, draws, 2)) / np.sqrt(2.0)
+    mean = own.mean(axis=0)
+    found = between_frfs(own - mean, normal, np.ones(draws)).mean
+    sigma = np.sqrt(np.einsum("naa->na", found) + 0.5 / few)
+    inside = np.mean(np.abs(mean) < 1.96 * sigma)
+    assert abs(inside - 0.95) < 4 * np.sqrt(0.95 * 0.05 / (2 * draws))  # without the widening 0.855
