@@ -101,10 +101,11 @@ def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:
     named = (c.index if c.name is None else c.name for c in layout.columns)
     keys = [key for key in (*named, *axes) if key is not None]
     if is_recorded(path):
-        return recorded(path, keys, rate_variable=layout.rate_variable)
-    if layout.rate_variable is not None:
+        return recorded(path, keys, rate=layout.rate_array)
+    if layout.rate_array is not None:
         raise InputError(
-            f"{path}: rate_variable in {layout.source} is for files of named arrays; give rate or time_column for text"
+            f"{path}: rate = {layout.rate!r} in {layout.source} names an array, and text has none; give the rate in "
+            "Hz, or time_column"
         )
     lines = read_text(path)
     if is_lvm(lines):
@@ -216,7 +217,7 @@ def with_unit(column: Column, rule: FileRule) -> Column:
 
 
 def _stated_rate(block: Channels, index: Sequence[int], layout: Layout) -> float:
-    stated, given = block.rate_of(index), layout.rate
+    stated, given = block.rate_of(index), layout.rate_stated
     if stated is None and given is None:
         raise InputError(
             f"{block.path}: no sampling rate; add rate = ... [Hz] or time_column = ... to {layout.source}"

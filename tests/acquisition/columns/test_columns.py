@@ -132,7 +132,7 @@ def test_bad_lines_are_named(tmp_path, records, before, after, message):
     [
         ("rate = 1000.0", "rat = 1000.0", r"unknown key 'rat' \(is 'rate' meant\?\)"),
         ("rate = 1000.0", "", r"no sampling rate; add rate = "),
-        ("rate = 1000.0", 'rate = "fast"', r"rate: 'fast' is no quantity; write a number"),
+        ("rate = 1000.0", 'rate = "fast"', r"rate = 'fast' in .* names an array, and text has none"),
         ("rate = 1000.0", "rate = -1.0", r"give the sampling rate in Hz"),
         ("rate = 1000.0", "rate = 1000.0\nsamples = 50", r"line 2: 40 samples; the layout asks for 50"),
         ('unit = "lbf"', 'unit = "g"', r"column 'hammer': 'g' is no unit of force"),
