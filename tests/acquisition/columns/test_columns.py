@@ -337,8 +337,13 @@ def test_a_record_that_stands_twice_is_named(tmp_path, records):
     copy = written(tmp_path / "P3_2.csv", records)
     text = LAYOUT.replace("node = 3\n", "", 1) + '[[file]]\nmatch = "P{node}_*"\n'
     with pytest.raises(
-        InputError, match=r"P3_2\.csv, line 2: the same numbers.* as .*P3_1\.csv, line 2.*leave one"
+        InputError,
+        match=r"P3_2\.csv, line 2: the same numbers.* as .*P3_1\.csv, line 2.*give the command without .*P3_2\.csv",
     ):
         read_columns([one, copy], layout_file(tmp_path, text))
     other = written(tmp_path / "P4_1.csv", records)
     assert len(read_columns([one, other], layout_file(tmp_path, text)).points) == 2
+    both = tmp_path / "P3_3.csv"
+    both.write_text(f"{one.read_text()}\n{one.read_text()}")
+    with pytest.raises(InputError, match="take one of the two out of the file"):
+        read_columns(both, layout_file(tmp_path, text))
