@@ -229,8 +229,12 @@ def _unit(source: _Source, channel: Channel, quantity: str) -> list[str]:
     if known:
         return [f"unit = {text_of(channel.unit)}  # by its heading", *scale]
     si = {"force": "N", "acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}[quantity]
-    why = f"the file states {channel.unit!r}" if channel.unit else "not in the file"
-    return [f'unit = "{si}"  # {why}: correct it, with scale = ... for a sensitivity', *scale]
+    if channel.unit:
+        return [
+            f"unit = {text_of(channel.unit)}  # as the file states it, and none of {quantity}: write {text_of(si)} and "
+            f"scale = ... ({si} per {channel.unit}, one over the sensitivity)"
+        ]
+    return [f'unit = "{si}"  # not in the file: correct it, with scale = ... for a sensitivity', *scale]
 
 
 def _of_frfs(source: _Source, lines: Channel, paths: Sequence[Path]) -> list[str]:

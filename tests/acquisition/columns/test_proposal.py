@@ -159,6 +159,17 @@ def test_a_rate_of_binary_times(kind: str) -> None:
     assert rate == 51200.0 and least <= 51200 <= largest and largest - least < 0.02
 
 
+def test_volts_are_not_read_as_newtons(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", "Time [s],Hammer [V],Acc [mV]\n", TIME, FORCE, MOTION)
+    text = propose_layout([path])
+    assert 'unit = "V"  # as the file states it, and none of force: write "N" and scale' in text
+    with pytest.raises(InputError, match=r"'V' is no unit of force .* and scale = \.\.\. for what one volt"):
+        read_test(path, layout=proposed([path]))
+    mended = text.replace('unit = "V"', 'unit = "N"\nscale = 440.0').replace('"mV"', '"g"\nscale = 0.01')
+    (test,) = read_test(path, layout=layout_from(tomllib.loads(mended)))
+    np.testing.assert_allclose(test.points[0].force[0], 440 * FORCE, atol=1e-5)
+
+
 def test_one_channel_makes_no_layout(tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", force=FORCE)
     with pytest.raises(InputError, match="holds 1 channels; a hit has a force and a response"):
