@@ -106,11 +106,10 @@ def _lost(frfs: FrfSet, tests: Sequence[Judged], inside: BoolArray) -> tuple[Boo
         return _lost_to_force(frfs, tests, coherent), why, advice
     if coherent is not None:
         return _lost_at_the_end(coherent >= LOST, inside), "the coherence is lost", advice
-    return (
-        _lost_to_noise(frfs, inside),
-        "the phases of all FRFs are those of noise",
-        "let the force reach further",
-    )
+    good = np.zeros(len(inside), dtype=np.bool_)
+    good[inside] = ~noise_lines(frfs.values[:, inside])
+    why = "the phases of all FRFs are those of noise"
+    return _lost_at_the_end(good, inside), why, "let the force reach further"
 
 
 def _lost_to_force(frfs: FrfSet, tests: Sequence[Judged], coherent: FloatArray | None) -> BoolArray | None:
@@ -144,14 +143,6 @@ def _lost_at_the_end(good: BoolArray, inside: BoolArray) -> BoolArray | None:
     """Return the lines at the upper end of a band from which nothing good comes back; None where nothing is good."""
     found = np.flatnonzero(inside & good)
     return None if not len(found) else np.asarray(inside & (np.arange(len(inside)) > found[-1]))
-
-
-def _lost_to_noise(frfs: FrfSet, inside: BoolArray) -> BoolArray | None:
-    """Return the lines at either end of a band which hold noise alone, by the phases; None where all do."""
-    lines = np.flatnonzero(inside)
-    good = lines[~noise_lines(frfs.values[:, inside])]
-    beyond = (np.arange(len(inside)) > good[-1:]) | (np.arange(len(inside)) < good[:1])
-    return np.asarray(inside & beyond) if len(good) else None
 
 
 def _runs(good: BoolArray) -> IntArray:
