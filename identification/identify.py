@@ -417,7 +417,7 @@ def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple
     if fitted.frfs.line_shape is not None:
         notes.append(fitted.frfs.line_shape.statement(stated=fitted.frfs.window is not None))
     if not fitted.fit.converged:
-        notes.append("the refinement of the poles did not converge; standard deviations may be too small")
+        notes.append(doubts.not_at_rest(fitted.fit, poles))
     left = fitted.excess()
     if fitted.measured and left > _POOR_FIT:
         poor = (

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +32,10 @@ _HIT = re.compile(
     r"(?:hit|run|rec|record|take|shot|impact|schlag|test|trial|no|nr|avg)[ _.-]*$", re.IGNORECASE
 )
 _DIRECTION = re.compile(r"(?<![a-z])([+-]?)([xyz])(?![a-z])", re.IGNORECASE)
+_RATES = ("fs", "rate", "samplingrate", "samplerate", "samplingfrequency", "fsample")
+"""Names of an array that is a sampling rate, without blanks and dashes."""
+_ENDS = 16
+"""Numbers at either end of a column whose digits are counted: one may end in zeros that are not written."""
 EVEN = 0.01
 """Steps of a column of times or lines differ by less than this part of their mean; those of a signal do not [-]."""
 
@@ -122,6 +128,42 @@ def lines_among(channels: Sequence[Channel]) -> Channel | None:
     """Return the channel of frequencies: even, and named so or in Hz."""
     even = [c for c in channels if is_even(c.values) and not _TIME.search(c.name)]
     return next((c for c in even if _FREQUENCY.search(c.name) or c.unit.lower() == "hz"), None)
+
+
+def is_rate(name: str) -> bool:
+    """Tell whether an array is called as a sampling rate is."""
+    return "".join(filter(str.isalpha, name.rpartition(".")[2].lower())) in _RATES
+
+
+def roundest_rate(times: FloatArray, unit: float) -> tuple[float, float, float]:
+    """Return the rate of the fewest digits that the last digit of times allows, the least and the largest [Hz].
+
+    Parameters
+    ----------
+    times : array, shape (n_samples,)
+        Times in even steps, each rounded by half its last digit [unit].
+    unit : float
+        One unit of the times [s].
+    """
+    span, steps = unit * float(times[-1] - times[0]), len(times) - 1
+    error = min(unit * _written_digit(times), 0.5 * span / steps)
+    least, largest = steps / (span + error), steps / (span - error)
+    usual = steps / span
+    rounds = (float(f"{usual:.{digits}g}") for digits in range(1, 17))
+    return next((r for r in rounds if least <= r <= largest), usual), least, largest
+
+
+def _written_digit(values: FloatArray) -> float:
+    """Return the last digit in which the first and last numbers are written, or what binary numbers have."""
+    ends = np.concatenate([values[:_ENDS], values[-_ENDS:]])
+    kind = np.float32 if np.array_equal(ends, ends.astype(np.float32)) else np.float64
+    exponents = [int(Decimal(repr(float(v))).as_tuple().exponent) for v in ends if v]
+    return max(10.0 ** min(exponents, default=0), float(np.finfo(kind).eps * np.abs(ends).max()))
+
+
+def text_of(value: str) -> str:
+    """Return a text as TOML has it."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def seconds(channel: Channel) -> float | None:

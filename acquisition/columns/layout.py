@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from acquisition.columns.mat_layout import MatLayout, mat_layout
+from acquisition.columns.mat_layout import MatLayout, check_axis, mat_layout
 from acquisition.columns.rules import FileRule, check_rule
 from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
@@ -98,10 +98,9 @@ class Layout:
         What is in the columns.
     files : tuple of FileRule
         Points that differ from file to file.
-    rate : float or None
-        Sampling rate [Hz]; None to take it from a time column or from the file.
-    rate_variable : str or None
-        Which array of a file of named arrays is the sampling rate [Hz].
+    rate : float, str or None
+        Sampling rate, or which array of a file of named arrays it is; None to take it from a time column or from the
+        file [Hz].
     time_column, frequency_column : int, str or None
         Number or heading of the column of times [s], or frequencies of FRFs [Hz].
     separator : str
@@ -124,8 +123,7 @@ class Layout:
 
     columns: tuple[Column, ...]
     files: tuple[FileRule, ...] = ()
-    rate: float | None = None
-    rate_variable: str | None = None
+    rate: float | str | None = None
     time_column: int | str | None = None
     frequency_column: int | str | None = None
     separator: str = "auto"
@@ -136,6 +134,16 @@ class Layout:
     nodes: Geometry = field(default_factory=Geometry.empty)
     source: str = "layout"
     mat: MatLayout | None = None
+
+    @property
+    def rate_array(self) -> str | None:
+        """Which array is the sampling rate, where the layout names one."""
+        return self.rate if isinstance(self.rate, str) else None
+
+    @property
+    def rate_stated(self) -> float | None:
+        """The sampling rate that the layout states [Hz]."""
+        return None if isinstance(self.rate, str) else self.rate
 
 
 def dof_of(node: int, direction: str) -> Dof:
@@ -181,8 +189,10 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
     InputError
         If a key is unknown or has a value of the wrong kind.
     """
+    if "rate_variable" in table:
+        raise InputError(f"{source}: rate_variable is called rate; write rate = {table['rate_variable']!r}")
     top = {
-        k: _in_si(v, UNITS[k], f"{source}: {k}") if k in UNITS else v
+        k: v if k == "rate" and _is_name(v) else _in_si(v, UNITS[k], f"{source}: {k}") if k in UNITS else v
         for k, v in table.items()
         if k not in ("column", "file", "nodes", "mat")
     }
@@ -203,16 +213,21 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         _check_column(column, f"{source}: [[column]] {n + 1}")
     for n, rule in enumerate(files):
         _check_rule(rule, columns, f"{source}: [[file]] {n + 1}")
-    if layout.rate is not None and layout.rate_variable is not None:
-        raise InputError(f"{source}: rate and rate_variable are both given; leave one out")
-    if layout.rate is not None and layout.rate <= 0:
+    if layout.rate_stated is not None and layout.rate_stated <= 0:
         raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
+    if mat is not None:
+        check_axis(mat, layout.rate, source)
     if not 0 <= layout.decay <= FASTEST:
         raise InputError(
             f"{source}: decay = {layout.decay:g}; give the decay rate of the exponential window in 1/s, which is not "
             "negative"
         )
     return layout
+
+
+def _is_name(value: Any) -> bool:
+    """Tell whether a text names an array: it does not begin as a quantity does."""
+    return isinstance(value, str) and value[:1] not in tuple("+-.0123456789 ")
 
 
 def _nodes(table: Any, source: str) -> Geometry:
@@ -287,6 +302,7 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "int | None": (int,),
     "float | None": (int, float),
     "str | None": (str,),
+    "float | str | None": (int, float, str),
     "str | int": (int, str),
     "int | str | None": (int, str),
 }

@@ -20,10 +20,8 @@ class MatLayout:
     Parameters
     ----------
     frequency : str
-        Variable with the lines, or the modes' frequencies [Hz]; a field of a structure with a dot, ``"test.f"``.
-    rate : str
-        Of FRFs without a variable of lines: variable with the sampling rate [Hz]; ``samples`` of the layout is then the
-        number of samples that were transformed.
+        Variable with the lines, or the modes' frequencies [Hz]; a field of a structure with a dot, ``"test.f"``. "" of
+        FRFs whose lines follow from ``rate`` and ``samples`` of the layout.
     frfs : str
         Variable with the FRFs; "" for modes.
     axes : tuple of str
@@ -44,7 +42,6 @@ class MatLayout:
     """
 
     frequency: str = ""
-    rate: str = ""
     frfs: str = ""
     axes: tuple[str, ...] = AXES
     quantity: str = "accelerance"
@@ -71,18 +68,28 @@ def mat_layout(table: Any, source: str) -> MatLayout:
     known = MatLayout.__dataclass_fields__
     values: dict[str, Any] = {}
     for key, value in table.items():
+        if key == "rate":
+            raise InputError(f"{source}: [mat] has no rate; write rate = {value!r} above it, beside samples")
         if key not in known:
             raise InputError(f"{source}: [mat] has unknown key {key!r}; keys are {', '.join(known)}")
         values[key] = _value(value, known[key].default, f"{source}: [mat] {key}")
-    if bool(values.get("frequency")) == bool(values.get("rate")) or (
-        values.get("rate") and not values.get("frfs")
-    ):
-        raise InputError(
-            f"{source}: [mat] needs the frequency of lines or of modes; of FRFs without it, rate in its place"
-        )
     layout = MatLayout(**values)
     _check(layout, source)
     return layout
+
+
+def check_axis(layout: MatLayout, rate: float | str | None, source: str) -> None:
+    """See that there are lines of FRFs or frequencies of modes: named, or of FRFs those that a sampling rate makes.
+
+    Raises
+    ------
+    InputError
+        If there are none, or both.
+    """
+    if bool(layout.frequency) == (rate is not None) or (rate is not None and not layout.frfs):
+        raise InputError(
+            f"{source}: [mat] needs the frequency of lines or of modes; of FRFs without it, rate and samples above it"
+        )
 
 
 def _value(value: Any, default: Any, where: str) -> Any:

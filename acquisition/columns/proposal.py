@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from acquisition.columns.guesses import (
     Channel,
     Guess,
     direction_in,
+    is_rate,
     lines_among,
     most_impulsive,
     node_pattern,
@@ -22,23 +22,23 @@ from acquisition.columns.guesses import (
     part_of,
     quantity_of,
     quantity_of_unit,
+    roundest_rate,
     seconds,
+    text_of,
     time_among,
     unit_in,
 )
 from acquisition.columns.layout import Layout
 from acquisition.columns.lvm import is_lvm, lvm_blocks
+from acquisition.columns.mat_proposal import frf_array, of_mat
 from acquisition.errors import InputError
-from acquisition.recorders import ARRAYS, Channels, is_recorded, listed
+from acquisition.recorders import ARRAYS, Channels, arrays, is_recorded, listed
 
 BEGINS = "# Layout by modalkit"
 """How a layout that was written here begins."""
 
 _ABOVE = 6
 """So many lines above the numbers may hold their headings and units."""
-
-_RATES = ("fs", "rate", "samplingrate", "samplerate", "samplingfrequency", "fsample")
-"""Names of an array that is a sampling rate, without blanks and dashes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +64,13 @@ def propose_layout(paths: Sequence[str | Path]) -> str:
         If the first cannot be read, or holds fewer than two channels.
     """
     files = [Path(path) for path in paths]
+    head = [
+        f"{BEGINS} from {files[0].name}: guesses, to be corrected. Not in the files: where the nodes are,",
+        "# and which way hammer and transducers point. A table [nodes] gives places, 1 = [0.0, 0.0, 0.0] in m.",
+    ]
+    found = frf_array(arrays(files[0])) if files[0].suffix.lower() == ".mat" else None
+    if found is not None:
+        return "\n".join([*head, *of_mat(found)]) + "\n"
     source = _source(files[0])
     if len(source.channels) < 2:
         raise InputError(
@@ -71,10 +78,6 @@ def propose_layout(paths: Sequence[str | Path]) -> str:
         )
     lines = lines_among(source.channels)
     body = _of_hits(source, files) if lines is None else _of_frfs(source, lines, files)
-    head = [
-        f"{BEGINS} from {files[0].name}: guesses, to be corrected. Not in the files: where the nodes are,",
-        "# and which way hammer and transducers point. A table [nodes] gives places, 1 = [0.0, 0.0, 0.0] in m.",
-    ]
     return "\n".join([*head, *body]) + "\n"
 
 
@@ -157,9 +160,9 @@ def _rate(source: _Source, time: Channel | None, scalars: Sequence[Channel]) -> 
     stated = source.record.rate_of([c.index for c in source.channels if c is not time][:1])
     if stated is not None:
         return [f"# The files state their sampling rate, {stated:g} Hz."]
-    named = [c for c in scalars if "".join(filter(str.isalpha, c.name.rpartition(".")[2].lower())) in _RATES]
+    named = [c for c in scalars if is_rate(c.name)]
     if named:
-        return [f"rate_variable = {_text(named[0].name)}  # {named[0].values[0]:g} Hz: by its name"]
+        return [f"rate = {text_of(named[0].name)}  # {named[0].values[0]:g} Hz: by its name"]
     if time is None:
         return [
             "# rate = ...  # the sampling rate in Hz: neither the file nor a column of times states it; needed"
@@ -168,7 +171,11 @@ def _rate(source: _Source, time: Channel | None, scalars: Sequence[Channel]) -> 
     if unit == 1.0 and time.unit.lower() != "ms":
         return [f"time_column = {_key(source, time)}  # {1 / step:.6g} Hz: it rises in even steps"]
     scale = 1.0 if unit is None else unit
-    return [f"rate = {1 / (scale * step):.9g}  # [Hz], from the column of times {time.name!r} in {time.unit}"]
+    rate, least, largest = roundest_rate(time.values, scale)
+    return [
+        f"rate = {rate:.12g}  # [Hz], from the column of times {time.name!r} in {time.unit}, whose last digit allows "
+        f"{least:.12g} to {largest:.12g}"
+    ]
 
 
 def _hit_column(
@@ -200,7 +207,7 @@ def _hit_column(
 
 def _called(source: _Source, channel: Channel) -> list[str]:
     if source.named:
-        return [f"name = {_text(channel.name)}"]
+        return [f"name = {text_of(channel.name)}"]
     return [
         f"index = {channel.index}"
         + (f"  # {channel.name}" if channel.name.isprintable() and channel.name else "")
@@ -208,7 +215,7 @@ def _called(source: _Source, channel: Channel) -> list[str]:
 
 
 def _key(source: _Source, channel: Channel) -> str:
-    return _text(channel.name) if source.named else str(channel.index)
+    return text_of(channel.name) if source.named else str(channel.index)
 
 
 def _unit(source: _Source, channel: Channel, quantity: str) -> list[str]:
@@ -220,10 +227,14 @@ def _unit(source: _Source, channel: Channel, quantity: str) -> list[str]:
     if known and channel.stated:
         return [f"# unit: the file states {channel.unit}", *scale]
     if known:
-        return [f"unit = {_text(channel.unit)}  # by its heading", *scale]
+        return [f"unit = {text_of(channel.unit)}  # by its heading", *scale]
     si = {"force": "N", "acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}[quantity]
-    why = f"the file states {channel.unit!r}" if channel.unit else "not in the file"
-    return [f'unit = "{si}"  # {why}: correct it, with scale = ... for a sensitivity', *scale]
+    if channel.unit:
+        return [
+            f"unit = {text_of(channel.unit)}  # as the file states it, and none of {quantity}: write {text_of(si)} and "
+            f"scale = ... ({si} per {channel.unit}, one over the sensitivity)"
+        ]
+    return [f'unit = "{si}"  # not in the file: correct it, with scale = ... for a sensitivity', *scale]
 
 
 def _of_frfs(source: _Source, lines: Channel, paths: Sequence[Path]) -> list[str]:
@@ -255,9 +266,5 @@ def _rule(pattern: Guess | None, paths: Sequence[Path]) -> list[str]:
     return [
         "",
         "[[file]]",
-        f"match = {_text(pattern.value)}  # the number in the name is taken as the node that was hit: {pattern.why}",
+        f"match = {text_of(pattern.value)}  # the number in the name is taken as the node that was hit: {pattern.why}",
     ]
-
-
-def _text(value: str) -> str:
-    return json.dumps(value, ensure_ascii=False)

@@ -28,13 +28,14 @@ UNEVEN = 0.5  # of the usual step: times that miss their place by more are uneve
 
 @dataclass(frozen=True, eq=False)
 class _Record:
-    """One hit as read: force, motion, where, and at which rate."""
+    """One hit as read: force, motion, from which file and where in it, and at which rate."""
 
     reference: Dof
     responses: tuple[Dof, ...]
     force: FloatArray
     motion: FloatArray
     rate: float
+    path: Path
     where: str
 
 
@@ -101,10 +102,11 @@ def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:
     named = (c.index if c.name is None else c.name for c in layout.columns)
     keys = [key for key in (*named, *axes) if key is not None]
     if is_recorded(path):
-        return recorded(path, keys, rate_variable=layout.rate_variable)
-    if layout.rate_variable is not None:
+        return recorded(path, keys, rate=layout.rate_array)
+    if layout.rate_array is not None:
         raise InputError(
-            f"{path}: rate_variable in {layout.source} is for files of named arrays; give rate or time_column for text"
+            f"{path}: rate = {layout.rate!r} in {layout.source} names an array, and text has none; give the rate in "
+            "Hz, or time_column"
         )
     lines = read_text(path)
     if is_lvm(lines):
@@ -190,7 +192,13 @@ def _records(path: Path, layout: Layout) -> list[_Record]:
         values = values[:, : layout.samples]
         records.append(
             _Record(
-                force.dof, tuple(c.dof for c in responses), values[0], values[1 : len(columns)], rate, where
+                force.dof,
+                tuple(c.dof for c in responses),
+                values[0],
+                values[1 : len(columns)],
+                rate,
+                path,
+                where,
             )
         )
     return records
@@ -216,7 +224,7 @@ def with_unit(column: Column, rule: FileRule) -> Column:
 
 
 def _stated_rate(block: Channels, index: Sequence[int], layout: Layout) -> float:
-    stated, given = block.rate_of(index), layout.rate
+    stated, given = block.rate_of(index), layout.rate_stated
     if stated is None and given is None:
         raise InputError(
             f"{block.path}: no sampling rate; add rate = ... [Hz] or time_column = ... to {layout.source}"
@@ -262,13 +270,22 @@ def _points(records: Sequence[_Record], layout: Layout) -> tuple[Hits, ...]:
 
 
 def _check_once(records: Sequence[_Record]) -> None:
-    """Check that no record of a point stands twice: noise makes any two hits differ."""
+    """Check that no record of a point stands twice: noise makes any two hits differ.
+
+    Equal hits of a simulation without noise are refused, too: no rule tells them from copies on a quiet recorder of few
+    bits, and one of them says all that they say.
+    """
     seen: dict[bytes, _Record] = {}
     for record in records:
         numbers = sha256(record.force.tobytes() + record.motion.tobytes()).digest()
         first = seen.setdefault(numbers, record)
         if first is not record:
+            remedy = (
+                "take one of the two out of the file"
+                if record.path == first.path
+                else f"give the command without {record.path} (in a study: take it out of files)"
+            )
             raise InputError(
                 f"{record.where}: the same numbers, sample by sample, as {first.where}; one hit counted twice makes "
-                "noise look smaller: leave one out"
+                f"noise look smaller: {remedy}. Of equal hits of a simulation, one says all"
             )

@@ -58,5 +58,6 @@ def factor_to_si(unit: str, quantity: str, where: str) -> float:
     if text not in table:
         raise InputError(
             f"{where}: {unit!r} is no unit of {quantity} known here; use one of {', '.join(table)}"
+            + (", and scale = ... for what one volt is in it" if text.endswith("v") else "")
         )
     return table[text]

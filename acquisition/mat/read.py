@@ -18,6 +18,7 @@ from acquisition.frfs.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
 from acquisition.modes.checks import check_frequencies, checked
+from acquisition.recorders.arrays import rate_of
 from acquisition.recorders.matlab.file import variables
 
 
@@ -44,7 +45,7 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
         )
     if plan.mat.frfs:
         placed = _placed(plan, Path(path))
-        return read_mat_frfs(path, placed, geometry=plan.nodes, decay=plan.decay, samples=plan.samples)
+        return read_mat_frfs(path, placed, plan)
     if plan.files:
         raise InputError(
             f"{plan.source}: [[file]] places the FRFs of a file, and [mat] names modes, whose points are dofs; leave "
@@ -80,20 +81,16 @@ def _placed(plan: Layout, path: Path) -> MatLayout:
     )
 
 
-def read_mat_frfs(
-    path: Path | str,
-    layout: MatLayout,
-    *,
-    geometry: Geometry,
-    decay: float = 0.0,
-    samples: int | None = None,
-) -> FrfSet:
-    """Read FRFs; see `read_mat`. ``samples`` is the number that were transformed, where the file states no lines."""
-    held = variables(Path(path), [layout.frequency or layout.rate, layout.frfs])
+def read_mat_frfs(path: Path | str, layout: MatLayout, plan: Layout) -> FrfSet:
+    """Read FRFs; see `read_mat`. Lines that are not in the file follow from ``rate`` and ``samples`` of the layout."""
+    axis = layout.frequency or plan.rate_array
+    held = variables(Path(path), [*([axis] if axis else []), layout.frfs])
     if layout.frequency:
         lines = _vector(held[layout.frequency], layout.frequency, path)
     else:
-        held[layout.frfs], lines = _one_sided(held[layout.frfs], held[layout.rate], layout, samples, path)
+        rate = rate_of(held[axis], axis, Path(path)) if axis else plan.rate_stated
+        assert rate is not None
+        held[layout.frfs], lines = _one_sided(held[layout.frfs], rate, layout, plan.samples, path)
     responses, references = ([Dof.of(d) for d in dofs] for dofs in (layout.responses, layout.references))
     sizes = {"line": len(lines), "response": len(responses), "reference": len(references)}
     values = held[layout.frfs]
@@ -120,26 +117,24 @@ def read_mat_frfs(
         responses=tuple(a for a in responses for _ in references),
         references=tuple(references) * len(responses),
         form=form,
-        decay=decay,
-        geometry=geometry,
+        decay=plan.decay,
+        geometry=plan.nodes,
         source=str(path),
     )
 
 
 def _one_sided(
-    values: AnyArray, rate: AnyArray, layout: MatLayout, samples: int | None, path: Path | str
+    values: AnyArray, rate: float, layout: MatLayout, samples: int | None, path: Path | str
 ) -> tuple[AnyArray, FloatArray]:
     """Return FRFs up to half the sampling rate, and their lines [Hz], which the transformed samples make.
 
     Raises
     ------
     InputError
-        If rate or samples are not stated, or do not belong to so many lines.
+        If samples are not stated, or do not belong to so many lines.
     """
     axis = layout.axes.index("line")
     count = values.shape[axis] if axis < values.ndim else 1
-    if rate.size != 1 or np.iscomplexobj(rate) or not 0 < float(rate.ravel()[0]) < np.inf:
-        raise InputError(f"{path}: {layout.rate!r} is not one positive number; name the sampling rate in Hz")
     half = None if samples is None else samples // 2 + 1
     if half is None or count not in (half, samples):
         stated = "is not stated" if half is None else f"= {samples} has {half} lines up to half the rate"
@@ -149,7 +144,7 @@ def _one_sided(
             f"half the rate, {count} if they go on to the rate; or name a frequency"
         )
     assert samples is not None
-    return np.take(values, np.arange(half), axis=axis), np.arange(half) * float(rate.ravel()[0]) / samples
+    return np.take(values, np.arange(half), axis=axis), np.arange(half) * rate / samples
 
 
 def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -> ModalData:

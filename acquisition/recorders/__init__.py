@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from acquisition.arrays import AnyArray
 from acquisition.errors import InputError
 from acquisition.recorders.channels import SAME_RATE, Channels
 from acquisition.recorders.recorded import Recorded
@@ -28,9 +29,7 @@ def is_recorded(path: Path) -> bool:
     return path.suffix.lower() in ENDINGS
 
 
-def recorded(
-    path: Path, names: Sequence[str | int] = (), *, rate_variable: str | None = None
-) -> Sequence[Channels]:
+def recorded(path: Path, names: Sequence[str | int] = (), *, rate: str | None = None) -> Sequence[Channels]:
     """Return the records of a file, each with its channels.
 
     Parameters
@@ -39,7 +38,7 @@ def recorded(
         The file; `is_recorded` holds for it.
     names : sequence of str or int
         Channels that are asked for; a file of named arrays gives these alone, and numbers none.
-    rate_variable : str, optional
+    rate : str, optional
         Which of its named arrays is the sampling rate [Hz].
 
     Raises
@@ -57,10 +56,10 @@ def recorded(
             raise InputError(
                 f"{path}: its arrays have names and no numbers; give name = ... in each [[column]]"
             )
-        return records_of(path, _module(ARRAYS[ending]).named_arrays, words, rate_variable)
-    if rate_variable is not None:
+        return records_of(path, _module(ARRAYS[ending]).named_arrays, words, rate)
+    if rate is not None:
         raise InputError(
-            f"{path}: rate_variable = {rate_variable!r} is for files of named arrays ({', '.join(ARRAYS)}); this file "
+            f"{path}: rate = {rate!r} names an array, as files of named arrays have ({', '.join(ARRAYS)}); this file "
             "states its rate, or give rate = ... [Hz]"
         )
     found: list[Recorded] = _module(RECORDERS[ending]).records(path)
@@ -83,6 +82,20 @@ def listed(path: Path) -> Sequence[Channels]:
     _check_readable(path)
     module = _module(ARRAYS[ending])
     return all_records(path, module.named_arrays, module.names_of(path))
+
+
+def arrays(path: Path) -> Mapping[str, AnyArray]:
+    """Return all arrays of numbers of a file of named arrays.
+
+    Raises
+    ------
+    InputError
+        As of `recorded`.
+    """
+    _check_readable(path)
+    module = _module(ARRAYS[path.suffix.lower()])
+    values: Mapping[str, AnyArray] = module.named_arrays(path, module.names_of(path)).values
+    return values
 
 
 def _module(name: str) -> Any:

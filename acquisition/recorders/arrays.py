@@ -39,7 +39,7 @@ class Named:
 Loader = Callable[[Path, Sequence[str]], Named]
 
 
-def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: str | None) -> list[Recorded]:
+def records_of(path: Path, load: Loader, names: Sequence[str], rate: str | None) -> list[Recorded]:
     """Return the records that the arrays of these names hold.
 
     Parameters
@@ -50,7 +50,7 @@ def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: st
         Returns arrays of the file by name.
     names : sequence of str
         Channels, as a layout names them.
-    rate_variable : str or None
+    rate : str or None
         Which array is the sampling rate [Hz].
 
     Raises
@@ -59,10 +59,10 @@ def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: st
         If an array is not there, or its shape is not that of a channel.
     """
     wanted = list(dict.fromkeys(names))
-    bases = [_base(name) for name in wanted] + ([rate_variable] if rate_variable else [])
+    bases = [_base(name) for name in wanted] + ([rate] if rate else [])
     held = load(path, list(dict.fromkeys(bases)))
     rows = {name: _rows(held.values[_base(name)], name, path) for name in wanted}
-    rate = None if rate_variable is None else _rate(held.values[rate_variable], rate_variable, path)
+    hertz = None if rate is None else rate_of(held.values[rate], rate, path)
     counts = {len(r) for r in rows.values()} - {1}
     if len(counts) > 1:
         stated = ", ".join(f"{name!r} {len(r)}" for name, r in rows.items())
@@ -75,7 +75,7 @@ def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: st
         Recorded(
             path=path,
             names=tuple(wanted),
-            rates={} if rate is None else dict.fromkeys(range(len(wanted)), rate),
+            rates={} if hertz is None else dict.fromkeys(range(len(wanted)), hertz),
             units={
                 i: held.units[base] for i, name in enumerate(wanted) if (base := _base(name)) in held.units
             },
@@ -149,11 +149,17 @@ def _part(values: AnyArray, part: str | None, name: str, path: Path) -> AnyArray
     )
 
 
-def _rate(values: AnyArray, name: str, path: Path) -> float:
-    """Return the sampling rate that an array of one number states [Hz]."""
+def rate_of(values: AnyArray, name: str, path: Path) -> float:
+    """Return the sampling rate that an array of one number states [Hz].
+
+    Raises
+    ------
+    InputError
+        If it is no positive number.
+    """
     if values.size != 1 or values.dtype.kind not in "fiu" or not 0 < float(values.ravel()[0]) < np.inf:
         raise InputError(
-            f"{path}: rate_variable {name!r} of shape {values.shape} is not one positive number; name the sampling "
-            "rate in Hz, or give rate = ..."
+            f"{path}: rate = {name!r} of shape {values.shape} is not one positive number; name the array with the "
+            "sampling rate in Hz, or give the number"
         )
     return float(values.ravel()[0])

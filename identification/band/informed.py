@@ -14,6 +14,7 @@ from acquisition.hits.checks import noise_level, upright
 from acquisition.hits.hammer import HammerTest
 from acquisition.hits.verdicts import HitVerdict
 from acquisition.warned import Consequential
+from identification.band.phases import noise_lines
 
 WEAK, FILTERED = 1e-2, 1e-4
 """Power of the force: 20 dB under its largest, lines without coherence count as lost; 40 dB under what it is just
@@ -42,8 +43,8 @@ Judged = tuple[HammerTest, Sequence[HitVerdict]]
 
 
 def informed_band(
-    frfs: FrfSet, tests: Sequence[Judged], band: tuple[float, float]
-) -> tuple[tuple[float, float], str | None]:
+    frfs: FrfSet, tests: Sequence[Judged], band: tuple[float, float] | None
+) -> tuple[tuple[float, float] | None, str | None]:
     """Return the part of a band in which the FRFs carry information, and what to say where it is not all of it.
 
     Parameters
@@ -52,36 +53,33 @@ def informed_band(
         FRFs of a test.
     tests : sequence of (HammerTest, verdicts)
         The hits they were made of; empty where they were read.
-    band : tuple of float
-        Band asked for [Hz].
+    band : tuple of float, optional
+        Band asked for; None for all lines, as in the answer [Hz].
     """
+    asked, band = band, band or (float(frfs.frequency[0]), float(frfs.frequency[-1]))
     inside = (frfs.frequency >= band[0]) & (frfs.frequency <= band[1]) & (frfs.frequency > 0)
-    coherent = best_coherence(frfs)
-    lost = _lost_to_force(frfs, tests, coherent) if tests else _lost_at_the_end(coherent, inside)
+    lost, why, advice = _lost(frfs, tests, inside)
     if lost is None or (lost & inside).sum() <= max(SOME * inside.sum(), ABOUT):
-        return band, None
+        return asked, None
     runs = _runs(inside & ~lost)
     first, last = runs[0].tolist() if len(runs) else (0, 0)
     if last - first < 2 * ABOUT:
-        return band, Consequential(
+        return asked, Consequential(
             f"hardly a spectral line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak "
             "there; do not trust modes of this band"
         )
     low = band[0] if not (lost & inside)[:first].any() else float(frfs.frequency[first])
     high = band[1] if not (lost & inside)[last:].any() else float(frfs.frequency[last])
-    why = (
-        "the force, or the filter before the converter, leaves too little"
-        if tests
-        else "the coherence is lost"
-    )
     again = [
         f"from {frfs.frequency[a]:.4g} to {frfs.frequency[b]:.4g} Hz"
         for a, b in runs[1:]
         if b - a >= 2 * ABOUT
     ]
+    whole = f"from {band[0]:.4g} to {band[1]:.4g} Hz"
+    instead = f"the lines go {whole}" if asked is None else f"not {whole} as asked"
     return (low, high), Consequential(
-        f"modes are sought from {low:.4g} to {high:.4g} Hz only, not from {band[0]:.4g} to {band[1]:.4g} Hz as asked: "
-        f"{why} in the rest; hit with a harder tip, sample faster, or name a mode there with add, to go further"
+        f"modes are sought from {low:.4g} to {high:.4g} Hz only, {instead}: {why} in the rest; {advice}, or name "
+        "a mode there with add, to go further"
         + (
             f"; {', '.join(again)} there is information again: give that as a band of its own"
             if again
@@ -98,6 +96,20 @@ def best_coherence(frfs: FrfSet) -> FloatArray | None:
     chance = 1.0 / count if count > 1 else 0.0
     mean = uniform_filter1d(frfs.coherence, ABOUT, axis=1, mode="nearest").max(axis=0)
     return np.asarray((mean - chance) / (1.0 - chance), dtype=np.float64)
+
+
+def _lost(frfs: FrfSet, tests: Sequence[Judged], inside: BoolArray) -> tuple[BoolArray | None, str, str]:
+    """Return the lines that carry no information, None where that cannot be told; why, and what to do."""
+    coherent, advice = best_coherence(frfs), "hit with a harder tip, sample faster"
+    if tests:
+        why = "the force, or the filter before the converter, leaves too little"
+        return _lost_to_force(frfs, tests, coherent), why, advice
+    if coherent is not None:
+        return _lost_at_the_end(coherent >= LOST, inside), "the coherence is lost", advice
+    good = np.zeros(len(inside), dtype=np.bool_)
+    good[inside] = ~noise_lines(frfs.values[:, inside])
+    why = "the phases of all FRFs are those of noise"
+    return _lost_at_the_end(good, inside), why, "let the force reach further"
 
 
 def _lost_to_force(frfs: FrfSet, tests: Sequence[Judged], coherent: FloatArray | None) -> BoolArray | None:
@@ -127,12 +139,10 @@ def _of_test(
     return np.asarray(((level < WEAK) & weak) | ((level < FILTERED * passed) & (frequency > corner)))
 
 
-def _lost_at_the_end(coherent: FloatArray | None, inside: BoolArray) -> BoolArray | None:
-    """Return the lines at the upper end of a band from which no coherence comes back."""
-    if coherent is None:
-        return None
-    good = np.flatnonzero(inside & (coherent >= LOST))
-    return None if not len(good) else np.asarray(inside & (np.arange(len(inside)) > good[-1]))
+def _lost_at_the_end(good: BoolArray, inside: BoolArray) -> BoolArray | None:
+    """Return the lines at the upper end of a band from which nothing good comes back; None where nothing is good."""
+    found = np.flatnonzero(inside & good)
+    return None if not len(found) else np.asarray(inside & (np.arange(len(inside)) > found[-1]))
 
 
 def _runs(good: BoolArray) -> IntArray:

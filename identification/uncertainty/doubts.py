@@ -9,6 +9,8 @@ from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.reciprocity import reciprocity
 from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
+from identification.fit.equations.iteration import solved_step
+from identification.fit.equations.refine import Fit
 
 _AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
 _NARROW = 0.1  # half-power bandwidth in lines under which a mode is rather a tone
@@ -139,4 +141,27 @@ def _not_reciprocal(frfs: FrfSet) -> tuple[str, ...]:
     table = reciprocity(frfs)
     return tuple(
         f"{row.iloc[0]} and {row.iloc[1]}: {row['message']}" for _, row in table.iterrows() if row["message"]
+    )
+
+
+def not_at_rest(fit: Fit, poles: ComplexArray) -> str:
+    """Return what to say of a fit that did not come to rest: how far its next step goes, and what to do.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit.
+    poles : (n_modes,) complex array
+        Those of its poles that are modes [rad/s].
+    """
+    step = fit.equations.step
+    move = solved_step(step.normal, step.gradient, 0.0)[1::2] / (2 * np.pi)
+    own = np.abs(fit.poles[:, None] - poles).argmin(axis=0)
+    worst = int(np.argmax(np.abs(move[own])))
+    place = float(np.abs(poles[worst])) / (2 * np.pi)
+    return (
+        "the refinement of the poles did not come to rest: frequencies and damping may still change, by the next step "
+        f"at most {abs(move[own[worst]]):.2g} Hz, at {hertz(place)}, and standard deviations, which are those of a fit "
+        "at rest, may be too small. Most often it has more poles than the data bear out: narrow the band, lower the "
+        "order, or drop what is no mode, and use the numbers that stay within their standard deviations"
     )

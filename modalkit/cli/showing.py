@@ -62,8 +62,14 @@ def show_modes(model: ModalModel | Modes) -> None:
         return
     scaled = "mass-normalised" if model.modal.scaled else unscaled
     out.print(f"Shapes at {counted(len(model.modal.dofs), 'degree')} of freedom, {scaled}.")
-    if not isinstance(model, Modes) and model.frfs.decay:
+    if isinstance(model, Modes):
+        return
+    if model.frfs.decay:
         out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was taken out of the damping.")
+    elif model.frfs.record is None and model.frfs.line_shape is None:
+        out.print(
+            "Window: none is stated. An exponential one would still be in the damping; --decay takes it out."
+        )
 
 
 def show_hits(hits: Sequence[HitVerdict]) -> None:

@@ -155,10 +155,8 @@ class Processed(Shown):
         self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         reach = self._reach([*add, *drop]) if band is None else None
-        if reach is None and band is not None:
-            return self._informed(band, order, add, drop)
         if reach is None:
-            return self.prepared(band, order).modes(add=add, drop=drop)
+            return self._informed(band, order, add, drop)
         statement = Consequential(
             f"the force is 20 dB down at {hertz(reach[1])}: modes are looked for below that; give a band to go "
             "further"
@@ -168,7 +166,7 @@ class Processed(Shown):
         return replace(model, warnings=(*model.warnings, statement))
 
     def _informed(
-        self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
+        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         """Identify the modes of the part of a band in which the FRFs carry information."""
         from identification import at_cut_edge
@@ -177,13 +175,14 @@ class Processed(Shown):
         with _naming_band(self.frfs, band, statement):
             prepared = self.prepared(within, order)
             model = prepared.modes(add=add, drop=drop)
-            if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
+            whole = band or (float(self.frfs.frequency[0]), float(self.frfs.frequency[-1]))
+            if beyond := at_cut_edge(model.modal.frequency, within or whole, whole, self.frfs.df):
                 model = prepared.modes(add=add, drop=[*drop, *beyond])
         return model if statement is None else replace(model, warnings=(*model.warnings, statement))
 
     def _informed_part(
-        self, band: tuple[float, float], named: Sequence[float]
-    ) -> tuple[tuple[float, float], str | None]:
+        self, band: tuple[float, float] | None, named: Sequence[float]
+    ) -> tuple[tuple[float, float] | None, str | None]:
         """Return the part of a band that carries information and what was cut; all of it if a mode is named beyond."""
         from identification import informed_band
 
@@ -191,13 +190,14 @@ class Processed(Shown):
             judged = [(j.test, j.verdicts) for j in self.judged]
             self._informed_bands[band] = informed_band(self.frfs, judged, band)
         within, statement = self._informed_bands[band]
-        if any(not within[0] <= f <= within[1] for f in named):
+        if within is not None and any(not within[0] <= f <= within[1] for f in named):
             return band, None
         return within, statement
 
     def within(self, band: tuple[float, float] | None, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that is identified where this one is asked for and modes are named [Hz]; None is all."""
-        return self._reach(named) if band is None else self._informed_part(band, named)[0]
+        reach = self._reach(named) if band is None else None
+        return self._informed_part(band, named)[0] if reach is None else reach
 
     def prepared(self, band: tuple[float, float] | None, order: int | None) -> Prepared:
         """Return what of an identification does not depend on the modes named, kept for the next call.
@@ -220,7 +220,9 @@ class Processed(Shown):
         return {}
 
     @cached_property
-    def _informed_bands(self) -> dict[tuple[float, float], tuple[tuple[float, float], str | None]]:
+    def _informed_bands(
+        self,
+    ) -> dict[tuple[float, float] | None, tuple[tuple[float, float] | None, str | None]]:
         return {}
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:

@@ -16,7 +16,7 @@ from family import Case, Family, written
 from acquisition.columns import read_columns
 
 NAMES = ("hits/force", "hits/acc")
-LAYOUT = ('rate_variable = "fs"\n' + COLUMNS.format(*NAMES)).encode()
+LAYOUT = ('rate = "fs"\n' + COLUMNS.format(*NAMES)).encode()
 RATE = np.array(1000.0)
 
 

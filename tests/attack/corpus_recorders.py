@@ -110,7 +110,7 @@ part = "imag"
 
 def recorder_families() -> list[Family]:
     """Return the families of recorders' files, named arrays, and text with words behind its numbers."""
-    plain, rated = COLUMNS.format("force", "acc"), 'rate_variable = "fs"\n' + COLUMNS.format("force", "acc")
+    plain, rated = COLUMNS.format("force", "acc"), 'rate = "fs"\n' + COLUMNS.format("force", "acc")
     tdms, mat = written("a.tdms", _tdms), _mat()
     step = np.array(1e-3)
     scalar = np.array(1000.0)

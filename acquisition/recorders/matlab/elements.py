@@ -32,7 +32,7 @@ CLASSES = {
 }
 """Classes of arrays that hold no plain numbers."""
 
-STRUCTURE, FIRST_NUMBER, LAST_NUMBER = 2, 6, 15
+STRUCTURE, SPARSE, FIRST_NUMBER, LAST_NUMBER = 2, 5, 6, 15
 COMPLEX = 0x0800
 DEEP = 4
 """So many structures may lie in one another; tools make two or three. Doubled, names get longer, no more."""
@@ -125,13 +125,35 @@ class Array:
             raise self.body.broken(f"has more behind the numbers of {self.name!r}")
         return values.reshape(self.shape, order="F")
 
+    def parts(self) -> list[AnyArray]:
+        """Return the numbers of each element behind the header, as they are stored.
+
+        Of a sparse matrix: the rows of its entries, where the columns begin among these, and the entries.
+
+        Raises
+        ------
+        InputError
+            If one is damaged, or holds no numbers.
+        """
+        found, at = [], 0
+        while at < len(self.body.data):
+            values, at = self._stored(at)
+            found.append(values)
+        return found
+
     def _part(self, at: int) -> tuple[AnyArray, int]:
+        values, after = self._stored(at)
+        if len(values) != self.count:
+            raise self.body.broken(f"has {len(values)} numbers for {self.name!r} of shape {self.shape}")
+        return values, after
+
+    def _stored(self, at: int) -> tuple[AnyArray, int]:
         kind, start, size, after = self.body.tag(at)
         if kind not in NUMBERS:
             raise self.body.broken(f"has {self.name!r} with numbers of unknown type {kind}")
         dtype = np.dtype(f"{self.body.order}{NUMBERS[kind]}")
-        if size != self.count * dtype.itemsize:
-            raise self.body.broken(f"has {size} bytes for {self.name!r} of shape {self.shape}")
+        if size % dtype.itemsize:
+            raise self.body.broken(f"has {size} bytes for numbers of {dtype.itemsize} in {self.name!r}")
         return np.frombuffer(self.body.data[start : start + size], dtype), after
 
     def fields(self) -> Iterator[Array]:

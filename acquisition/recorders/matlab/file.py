@@ -6,6 +6,7 @@ import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
+from acquisition.archives import allowed
 from acquisition.arrays import AnyArray
 from acquisition.errors import InputError
 from acquisition.recorders.matlab.elements import (
@@ -22,10 +23,6 @@ from acquisition.recorders.matlab.elements import (
 
 HEADER = 128
 HDF = b"\x89HDF\r\n\x1a\n"
-LARGEST_RATIO, FREE = 10, 4 << 20
-"""A compressed variable may take this many times the file's size, and 4 MB in any case: measured numbers hardly
-compress (1.1 to 4 times), zeros do 1000 times. Doubled, a hostile file takes twice the memory [-, bytes]."""
-
 PEEK = 4096
 """Bytes decompressed to learn the name of a variable: a header with eight dimensions and 63 letters takes 150."""
 
@@ -61,10 +58,27 @@ def variables(path: Path, names: list[str]) -> dict[str, AnyArray]:
                 f"{path}: no variable {name.partition('.')[0]!r} in it; there are {_listed(there)}"
             )
         array = _field(found[name], name)
-        if 16 * array.count > _limit(raw):
+        if 16 * array.count > allowed(len(raw.data)):
             raise _too_large(raw)
         answer[name] = array.numbers()
     return answer
+
+
+def arrays(path: Path) -> Iterator[Array]:
+    """Yield all arrays of a file, each once.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is of version 7.3 or 4, is damaged, or two arrays have one name.
+    """
+    raw = _bytes(path)
+    seen: set[str] = set()
+    for array in _arrays(raw, None):
+        if array.name in seen:
+            raise raw.broken(f"holds {array.name!r} twice")
+        seen.add(array.name)
+        yield array
 
 
 def listed(path: Path) -> list[str]:
@@ -77,7 +91,7 @@ def listed(path: Path) -> list[str]:
     """
     raw = _bytes(path)
     found = []
-    for array in _arrays(raw, {array.name for array in _arrays(raw, set())}):
+    for array in _arrays(raw, None):
         fields = list(array.fields()) if array.kind == STRUCTURE and array.count == 1 else []
         named = [(f"{array.name}.{field.name}", field) for field in fields] or [(array.name, array)]
         found += [name for name, one in named if FIRST_NUMBER <= one.kind <= LAST_NUMBER]
@@ -100,16 +114,16 @@ def _bytes(path: Path) -> Bytes:
     return Bytes(memoryview(raw), order, str(path))
 
 
-def _arrays(raw: Bytes, wanted: set[str]) -> Iterator[Array]:
-    """Yield the arrays of a file; those that are not wanted with their header alone."""
-    at, limit = HEADER, _limit(raw)
+def _arrays(raw: Bytes, wanted: set[str] | None) -> Iterator[Array]:
+    """Yield the arrays of a file; those that are not wanted with their header alone, None for all that are."""
+    at, limit = HEADER, allowed(len(raw.data))
     while at < len(raw.data):
         kind, start, size, at = raw.tag(at)
         if kind == COMPRESSED:
             packed = raw.data[start : start + size]
             peek = Bytes(memoryview(_unpacked(packed, PEEK, raw)), raw.order, raw.where)
             name = header(_open(peek)).name
-            if name in wanted:
+            if wanted is None or name in wanted:
                 whole = memoryview(_unpacked(packed, limit, raw))
                 if len(whole) >= limit:
                     raise _too_large(raw)
@@ -136,15 +150,10 @@ def _matrix(whole: Bytes) -> Bytes:
     return whole.part(start, size)
 
 
-def _limit(raw: Bytes) -> int:
-    """Return how much a variable may take [bytes]."""
-    return LARGEST_RATIO * len(raw.data) + FREE
-
-
 def _too_large(raw: Bytes) -> InputError:
     return InputError(
-        f"{raw.where}: a variable takes over {LARGEST_RATIO} times the file's size; measured numbers do not: save what "
-        "is needed alone"
+        f"{raw.where}: {len(raw.data)} bytes that unpack to more than {allowed(len(raw.data))}; save what is needed "
+        "alone, or with '-v6', which does not pack"
     )
 
 

@@ -132,7 +132,7 @@ def test_bad_lines_are_named(tmp_path, records, before, after, message):
     [
         ("rate = 1000.0", "rat = 1000.0", r"unknown key 'rat' \(is 'rate' meant\?\)"),
         ("rate = 1000.0", "", r"no sampling rate; add rate = "),
-        ("rate = 1000.0", 'rate = "fast"', r"rate: 'fast' is no quantity; write a number"),
+        ("rate = 1000.0", 'rate = "fast"', r"rate = 'fast' in .* names an array, and text has none"),
         ("rate = 1000.0", "rate = -1.0", r"give the sampling rate in Hz"),
         ("rate = 1000.0", "rate = 1000.0\nsamples = 50", r"line 2: 40 samples; the layout asks for 50"),
         ('unit = "lbf"', 'unit = "g"', r"column 'hammer': 'g' is no unit of force"),
@@ -337,8 +337,13 @@ def test_a_record_that_stands_twice_is_named(tmp_path, records):
     copy = written(tmp_path / "P3_2.csv", records)
     text = LAYOUT.replace("node = 3\n", "", 1) + '[[file]]\nmatch = "P{node}_*"\n'
     with pytest.raises(
-        InputError, match=r"P3_2\.csv, line 2: the same numbers.* as .*P3_1\.csv, line 2.*leave one"
+        InputError,
+        match=r"P3_2\.csv, line 2: the same numbers.* as .*P3_1\.csv, line 2.*give the command without .*P3_2\.csv",
     ):
         read_columns([one, copy], layout_file(tmp_path, text))
     other = written(tmp_path / "P4_1.csv", records)
     assert len(read_columns([one, other], layout_file(tmp_path, text)).points) == 2
+    both = tmp_path / "P3_3.csv"
+    both.write_text(f"{one.read_text()}\n{one.read_text()}")
+    with pytest.raises(InputError, match="take one of the two out of the file"):
+        read_columns(both, layout_file(tmp_path, text))

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from nptdms import ChannelObject, TdmsWriter
-from scipy.io import wavfile
+from scipy.io import savemat, wavfile
 
 from acquisition import Dof, FrfSet, HammerTest, InputError, propose_layout
 from acquisition.columns import Layout, layout_from
-from acquisition.columns.guesses import node_pattern
+from acquisition.columns.guesses import node_pattern, roundest_rate
 from acquisition.readers import read_test
 
 RATE, SAMPLES = 1024.0, 256
@@ -126,6 +126,48 @@ def test_a_wav_file_lacks_its_full_scale_and_says_so(tmp_path: Path) -> None:
 def test_nodes_are_found_in_names(names: list[str], pattern: str | None) -> None:
     found = node_pattern([Path(name) for name in names])
     assert (None if found is None else found.value) == pattern
+
+
+@pytest.mark.parametrize("axis", ["lines", "rate"])
+@pytest.mark.parametrize("shape", [(65, 3), (3, 65), (65, 3, 2), (65, 1)])
+def test_frfs_of_a_matlab_file(tmp_path: Path, axis: str, shape: tuple[int, ...]) -> None:
+    frfs = np.random.default_rng(1).standard_normal((*shape, 2)) @ np.array([1.0, 1j])
+    more = {"f": np.arange(65) * 4.0} if axis == "lines" else {"Fs": 512.0}
+    savemat(tmp_path / "a.mat", {"test": {"H": frfs}, "note": "beam", "mass": np.eye(3), **more})
+    (found,) = read_test(tmp_path / "a.mat", layout=proposed([tmp_path / "a.mat"]))
+    assert isinstance(found, FrfSet) and found.form == "accelerance"
+    np.testing.assert_array_equal(found.frequency, np.arange(65) * 4.0)
+    along = np.moveaxis(frfs, shape.index(65), -1)
+    np.testing.assert_array_equal(found.values, along.reshape(-1, 65))
+    assert "where it was hit, not in the file: correct it" in propose_layout([tmp_path / "a.mat"])
+
+
+@pytest.mark.parametrize("digits", [4, 6, 9])
+def test_a_rate_has_no_more_digits_than_the_times(tmp_path: Path, digits: int) -> None:
+    """Times in ms written with few decimals make 5119.99997 Hz of 5120 if they are taken to the last bit."""
+    times = np.round(1e3 * np.arange(600) / 5120.0, digits)
+    rows = [f"{t:.{digits}f},{k % 7},{k % 5}" for k, t in enumerate(times)]
+    (tmp_path / "a.csv").write_text("t [ms],hammer [N],acc [g]\n" + "\n".join(rows), encoding="utf-8")
+    assert proposed([tmp_path / "a.csv"]).rate == 5120.0
+    assert "whose last digit allows" in propose_layout([tmp_path / "a.csv"])
+
+
+@pytest.mark.parametrize("kind", ["f4", "f8"])
+def test_a_rate_of_binary_times(kind: str) -> None:
+    times = (np.arange(5000) / 51.2).astype(kind).astype(float)
+    rate, least, largest = roundest_rate(times, 1e-3)
+    assert rate == 51200.0 and least <= 51200 <= largest and largest - least < 0.02
+
+
+def test_volts_are_not_read_as_newtons(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", "Time [s],Hammer [V],Acc [mV]\n", TIME, FORCE, MOTION)
+    text = propose_layout([path])
+    assert 'unit = "V"  # as the file states it, and none of force: write "N" and scale' in text
+    with pytest.raises(InputError, match=r"'V' is no unit of force .* and scale = \.\.\. for what one volt"):
+        read_test(path, layout=proposed([path]))
+    mended = text.replace('unit = "V"', 'unit = "N"\nscale = 440.0').replace('"mV"', '"g"\nscale = 0.01')
+    (test,) = read_test(path, layout=layout_from(tomllib.loads(mended)))
+    np.testing.assert_allclose(test.points[0].force[0], 440 * FORCE, atol=1e-5)
 
 
 def test_one_channel_makes_no_layout(tmp_path: Path) -> None:

@@ -57,17 +57,33 @@ def test_frfs_of_a_structure(tmp_path: Path, compressed: bool) -> None:
 @pytest.mark.parametrize("samples", [100, 101, 51])
 def test_a_sampling_rate_makes_the_lines_where_there_is_no_axis(tmp_path: Path, samples: int) -> None:
     """Lines are the rate over the number of samples apart; of a spectrum up to the rate, the second half is no FRF."""
-    table = {**FRFS, "frfs": "H", "rate": "fs"}
+    table = {**FRFS, "frfs": "H"}
     del table["frequency"]
     path = saved(tmp_path, fs=1000.0, H=H)
-    frfs = read_mat(path, layout(table, samples=samples))
+    frfs = read_mat(path, layout(table, rate="fs", samples=samples))
     half = samples // 2 + 1
     np.testing.assert_allclose(frfs.frequency, np.arange(half) * 1000.0 / samples, rtol=1e-12)
     np.testing.assert_array_equal(frfs.values, 9.80665 * H[:half].reshape(half, 6).T)
     with pytest.raises(InputError, match=r"51 lines and no frequency, .*: 100 or 101 if .*, 51 if"):
-        read_mat(path, layout(table))
+        read_mat(path, layout(table, rate="fs"))
     with pytest.raises(InputError, match="samples = 90 has 46 lines"):
-        read_mat(path, layout(table, samples=90))
+        read_mat(path, layout(table, rate="fs", samples=90))
+    stated = read_mat(path, layout(table, rate="1 kHz", samples=samples))
+    np.testing.assert_array_equal(stated.frequency, frfs.frequency)
+    for more in (
+        {},
+        {"rate": 1000.0, "mat": {**table, "frequency": "f"}},
+        {"rate": 1000.0, "mat": {"frequency": "fn"}},
+    ):
+        with pytest.raises(InputError, match="needs the frequency of lines or of modes"):
+            layout_from({"mat": table} | more)
+
+
+def test_earlier_names_of_the_rate_are_refused_with_the_one_there_is() -> None:
+    with pytest.raises(InputError, match="rate_variable is called rate; write rate = 'fs'"):
+        layout_from({"rate_variable": "fs"})
+    with pytest.raises(InputError, match=r"\[mat\] has no rate; write rate = 'fs' above it"):
+        layout({"frfs": "H", "rate": "fs"})
 
 
 def test_axes_in_any_order_and_left_out(tmp_path: Path) -> None:
@@ -196,7 +212,7 @@ def test_a_bomb_takes_no_more_than_its_share(tmp_path: Path) -> None:
     path = saved(tmp_path, fn=np.zeros(20_000_000), other=np.zeros(20_000_000))
     assert path.stat().st_size < 1_000_000
     tracemalloc.start()
-    with pytest.raises(InputError, match="times the file's size"):
+    with pytest.raises(InputError, match="unpack to more than"):
         read_mat(path, layout({"frequency": "fn"}))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()

@@ -71,15 +71,15 @@ KINDS: dict[str, tuple[Callable[[Path], Path], dict[str, Any]]] = {
     "a.tdms": (tdms, {}),
     "a.h5": (
         hdf5,
-        {"force": {"name": "test/force"}, "motion": {"name": "test/acc"}, "rate_variable": "fs"},
+        {"force": {"name": "test/force"}, "motion": {"name": "test/acc"}, "rate": "fs"},
     ),
-    "a.npz": (npz, {"force": {"unit": "kN"}, "rate_variable": "fs"}),
+    "a.npz": (npz, {"force": {"unit": "kN"}, "rate": "fs"}),
     "a.mat": (
         mat,
         {
             "force": {"name": "test.force", "unit": "kN"},
             "motion": {"name": "test.acc"},
-            "rate_variable": "fs",
+            "rate": "fs",
         },
     ),
 }
@@ -205,9 +205,9 @@ MISTAKES = [
     ("a.tdms", tdms, {"motion": {"name": "accel"}}, r"'accel' is not there; the headings are 'force', 'acc'"),
     ("a.tdms", lambda p: tdms(p, slow=True), {}, r"rates, column 'acc' at 2 Hz and column 'force' at 2048 Hz"),
     ("a.tdms", tdms, {"rate": 1000.0}, r"2048 Hz by its header, at 1000 Hz by"),
-    ("a.npz", npz, {"motion": {"name": "ac"}, "rate_variable": "fs"}, r"no array 'ac' in it; there are 'fs', 'force'"),
+    ("a.npz", npz, {"motion": {"name": "ac"}, "rate": "fs"}, r"no array 'ac' in it; there are 'fs', 'force'"),
     ("a.npz", npz, {"motion": {"name": "acc[2]"}}, r"'acc\[2\]' is not there, the array has shape \(2, 64\)"),
-    ("a.npz", npz, {"rate_variable": "acc"}, r"rate_variable 'acc' of shape \(2, 64\) is not one positive number"),
+    ("a.npz", npz, {"rate": "acc"}, r"rate = 'acc' of shape \(2, 64\) is not one positive number"),
     ("a.h5", hdf5, {"force": {"name": "force"}}, r"no data set 'force' in it; there are 'fs', 'test/acc'"),
     ("a.mat", mat, {"force": {"name": "force"}}, r"no variable 'force' in it"),
 ]  # fmt: skip
@@ -224,7 +224,7 @@ def test_mistakes_are_named(
 def test_named_arrays_have_no_numbers(tmp_path: Path) -> None:
     numbered = {"column": [{"index": 0, "quantity": "force"}, {"name": "acc", "quantity": "acceleration"}]}
     with pytest.raises(InputError, match="its arrays have names and no numbers"):
-        read_columns(npz(tmp_path / "a.npz"), layout_from({**numbered, "rate_variable": "fs"}))
+        read_columns(npz(tmp_path / "a.npz"), layout_from({**numbered, "rate": "fs"}))
 
 
 @pytest.mark.parametrize("name", ["a.tdms", "a.h5", "a.wav", "a.npz", "a.mat"])
@@ -241,11 +241,11 @@ def test_an_hdf5_file_that_goes_on_behind_its_end_is_refused(tmp_path: Path, new
     path = tmp_path / "a.h5"
     with h5py.File(path, "w", userblock_size=ahead, libver="latest" if newer else "earliest") as file:
         file["fs"], file["force"], file["acc"] = RATE, FORCE, MOTION
-    assert read_columns(path, layout(rate_variable="fs")).rate == RATE
+    assert read_columns(path, layout(rate="fs")).rate == RATE
     with path.open("ab") as file:
         file.write(b"1.0\n")
     with pytest.raises(InputError, match=r"it ends at byte \d+ by its head"):
-        read_columns(path, layout(rate_variable="fs"))
+        read_columns(path, layout(rate="fs"))
 
 
 def test_hdf5_numbers_of_fewer_digits_than_their_bits_have_are_refused(tmp_path: Path) -> None:
@@ -257,7 +257,7 @@ def test_hdf5_numbers_of_fewer_digits_than_their_bits_have_are_refused(tmp_path:
         space = h5py.h5s.create_simple(MOTION.shape)
         h5py.h5d.create(file.id, b"acc", kind, space).write(space, space, np.ascontiguousarray(MOTION))
     with pytest.raises(InputError, match="'acc' states a layout of bits that no 64-bit number has"):
-        read_columns(path, layout(rate_variable="fs"))
+        read_columns(path, layout(rate="fs"))
 
 
 @pytest.mark.parametrize("newer", [False, True])
@@ -269,10 +269,10 @@ def test_hdf5_numbers_that_lack_a_chunk_are_refused(tmp_path: Path, newer: bool)
         acc = file.create_dataset("acc", FORCE.shape, "f8", chunks=(1, 16), compression="gzip")
         acc[0], acc[1, :32], acc[1, 48:] = MOTION[0], MOTION[1, :32], MOTION[1, 48:]
     with pytest.raises(InputError, match=r"'acc' lacks the numbers from index 1, 32 on, one of its chunks"):
-        read_columns(path, layout(rate_variable="fs"))
+        read_columns(path, layout(rate="fs"))
     with h5py.File(path, "a") as file:
         file["acc"][1] = MOTION[1]
-    assert read_columns(path, layout(rate_variable="fs")).points[0].count == HITS
+    assert read_columns(path, layout(rate="fs")).points[0].count == HITS
 
 
 @pytest.mark.parametrize("kind", [">f8", "<f4", "<i2", ">i4", "u1"])
@@ -280,7 +280,7 @@ def test_hdf5_numbers_of_any_ordinary_kind_are_read(tmp_path: Path, kind: str) -
     values = np.round(30 * np.abs(FORCE)).astype(kind)
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["fs"], file["force"], file["acc"] = RATE, values, values
-    found = read_columns(tmp_path / "a.h5", layout(rate_variable="fs"))
+    found = read_columns(tmp_path / "a.h5", layout(rate="fs"))
     np.testing.assert_array_equal(found.points[0].force, np.asarray(values, dtype=float))
 
 
@@ -304,6 +304,6 @@ def test_a_beam_of_one_mode_has_its_frequency(tmp_path: Path) -> None:
     force[8] = 1.0
     response = np.exp(-0.01 * 2 * np.pi * 85 * time) * np.sin(2 * np.pi * 85 * time)
     np.savez(tmp_path / "a.npz", fs=RATE, force=force, acc=np.roll(response, 8) * (time >= 8 / RATE))
-    (test,) = read_test(tmp_path / "a.npz", layout=layout(rate_variable="fs"))
+    (test,) = read_test(tmp_path / "a.npz", layout=layout(rate="fs"))
     frfs = estimate_frfs(test, verdicts=judge_hits(test))
     assert frfs.frequency[np.abs(frfs.values[0]).argmax()] == pytest.approx(85, abs=frfs.df)

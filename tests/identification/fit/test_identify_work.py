@@ -10,8 +10,10 @@ import pytest
 from identification_cases import bench, column, lines, structure
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from identification import identify
+from identification import identify, prepare
 from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.refine import fit_at
+from identification.uncertainty.doubts import not_at_rest
 
 REFERENCES = (4, 9, 17)
 
@@ -87,3 +89,16 @@ def test_a_fit_is_made_once_more_only_if_the_noise_turns_out_another(bases):
     model = identify(replace(frfs, window="none"), band=(0.0, 1000.0))
     assert len(model) == 12
     assert len(bases) < 60  # some 50 as rounding goes; from scratch again would be twice as many
+
+
+def test_a_fit_that_does_not_come_to_rest_says_how_far_it_is_off():
+    """The next step brings back a pole that lies a tenth of a hertz beside."""
+    frfs = bench().frfs(lines(0.5, 20.0), column(), noise=1e-3, rng=np.random.default_rng(1))
+    prepared = prepare(frfs, band=(20.0, 1000.0))
+    fitted, rest = prepared.fitted, "did not come to rest"
+    assert not any(rest in w for w in prepared.modes().warnings)
+    modes = fitted.fit.poles.copy()
+    modes[2] += 2j * np.pi * 0.1
+    early = fit_at(fitted.frfs, modes, fitted.weights, fitted.fit.linear.powers, converged=False)
+    text = not_at_rest(early, modes[:12])
+    assert rest in text and "at most 0.1 Hz" in text and "narrow the band" in text

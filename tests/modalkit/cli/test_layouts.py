@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 Run = Callable[..., tuple[int, str, str]]
 RATE, SAMPLES = 1024.0, 2048
@@ -69,3 +70,18 @@ def test_a_file_of_a_recorder_without_a_layout_is_refused(
     code, _, err = run("inspect", tmp_path / name)
     assert code == 2
     assert "needs a layout file" in err and f"docs/howto/{page}.md" in err and len(err.splitlines()) == 1
+
+
+def test_frfs_without_a_stated_window_say_that_one_would_be_in_the_damping(run: Run, tmp_path: Path) -> None:
+    lines = np.arange(1.0, 201.0)
+    s = 2j * np.pi * lines
+    frf = s**2 / (s**2 + 12.0 * s + (2 * np.pi * 85.0) ** 2)
+    frf = frf + 1e-3 * np.random.default_rng(1).standard_normal((200, 2)) @ np.array([1.0, 1j])
+    savemat(tmp_path / "h.mat", {"f": lines, "H": frf[:, None]})
+    code, _, err = run("inspect", tmp_path / "h.mat", "--write-layout", tmp_path / "l.toml")
+    assert (code, err) == (0, "")
+    known = (tmp_path / "h.mat", "--layout", tmp_path / "l.toml")
+    code, text, _ = run("identify", *known)
+    assert code == 0 and "Window: none is stated" in text and "--decay takes it out" in text
+    code, text, _ = run("identify", *known, "--decay", "2")
+    assert code == 0 and "none is stated" not in text and "2 1/s of decay was taken out" in text

@@ -59,8 +59,51 @@ def test_frfs_that_were_read_end_where_coherence_does_not_come_back() -> None:
     frfs, _ = hit(width=5e-3, width_scatter=0.01, force_noise=0.5)
     (_, high), message = informed_band(frfs, [], (20.0, 1000.0))
     assert high < 700 and message is not None and "coherence" in message
+
+
+def test_frfs_without_coherence_end_where_their_phases_are_those_of_noise() -> None:
+    frfs, _ = hit(width=5e-3, width_scatter=0.01, force_noise=0.5)
+    (_, coherent), _ = informed_band(frfs, [], (20.0, 1000.0))
     bare = replace(frfs, coherence=None, variance=None, scatter=None)
-    assert informed_band(bare, [], (20.0, 1000.0)) == ((20.0, 1000.0), None)
+    (low, high), message = informed_band(bare, [], (20.0, 1000.0))
+    assert low == 20.0 and abs(high - coherent) < 32 and message is not None and "phases" in message
+    clean = hit(width=3e-4, force_noise=1e-3)[0].band(1.0, 800.0)  # up to the filter
+    assert informed_band(replace(clean, coherence=None, variance=None), [], None) == (None, None)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+@pytest.mark.parametrize("seed", range(2))
+def test_averages_whose_force_ends_below_the_lines_need_no_band(seed: int, noise: float) -> None:
+    """Hann averages of a random force up to 900 of 1024 Hz, noise on the responses, and on the force or not."""
+    model = Processed(UffContent(), averages(noise, seed), (), ProcessingOptions(), ()).identify()
+    np.testing.assert_allclose(model.modal.frequency, FREQUENCIES, rtol=1e-3)
+    assert model.modal.damping is not None and model.modal.damping_sigma is not None
+    assert np.max(np.abs(model.modal.frequency - FREQUENCIES) / model.modal.frequency_sigma) < 3.0
+    assert np.max(np.abs(model.modal.damping - 0.005) / model.modal.damping_sigma) < 3.0
+    assert model.band[1] < 900 and any("the lines go from" in w for w in model.warnings)
+
+
+def averages(force_noise: float, seed: int) -> FrfSet:
+    """Average FRFs over 60 half-overlapping blocks of a second with a Hann window."""
+    rng, samples = np.random.default_rng(seed), 2048
+    length = 34 * samples
+    s = 2j * np.pi * np.fft.rfftfreq(length, 1 / 2048)
+    force = np.fft.rfft(rng.standard_normal(length)) * (np.abs(s) < 2 * np.pi * 900)
+    window = np.hanning(samples + 1)[:-1]
+
+    def spectra(line: np.ndarray, noise: float) -> np.ndarray:
+        wave = np.fft.irfft(line, length)
+        wave = wave + noise * np.std(wave) * rng.standard_normal(length)
+        starts = range(4 * samples, length - samples + 1, samples // 2)
+        return np.array([np.fft.rfft(window * wave[a : a + samples])[1:] for a in starts])
+
+    push = spectra(force, force_noise)
+    motion = [
+        spectra(np.append(0.0, SYSTEM.receptance(s[1:], point)[0] * s[1:] ** 2) * force, 1e-3)
+        for point in (0, 1)
+    ]
+    values = [np.sum(m * push.conj(), axis=0) / np.sum(np.abs(push) ** 2, axis=0) for m in motion]
+    return FrfSet(np.arange(1.0, 1025.0), np.array(values), (Dof(1, 3),) * 2, (Dof(1, 3), Dof(2, 3)))
 
 
 def test_no_mode_is_found_beyond_the_force_and_the_user_hears_of_it() -> None:
