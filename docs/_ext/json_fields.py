@@ -50,7 +50,7 @@ def fields(document: type) -> Iterator[Field]:
 
 def _fields(entry: type, at: str, seen: dict[type, str]) -> Iterator[Field]:
     for name, hint in get_type_hints(entry, include_extras=True).items():
-        kind, text = get_args(get_args(hint)[0] if get_origin(hint) is NotRequired else hint)
+        kind, text, *_ = get_args(get_args(hint)[0] if get_origin(hint) is NotRequired else hint)
         found = re.fullmatch(r"(.*?)(?: \[([^\]]+)\])?", text)
         assert found is not None
         path, inner = f"{at}{name}", list(_objects(kind, f"{at}{name}"))

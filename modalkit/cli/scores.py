@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from modalkit.blind.scoring.markdown import BEGIN, END, into_page, score_markdown
+from modalkit.blind.scoring.page import Section, sections
 from modalkit.blind.scoring.score import Score
-from modalkit.blind.scoring.section import Section
-from modalkit.blind.scoring.sections import sections
 from modalkit.cli.common import out, show_table
 from modalkit.output.destinations import Kind, check_output
 from modalkit.output.whole import write_text

@@ -3,27 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
-
-import pandas as pd
 
 from identification import Correlation as Comparison
+from modalkit.output.fields import fill
 from modalkit.output.schemas.correlation import ComparisonDocument, CorrelationDocument
 from updating.correlation.correlate import Correlation
-
-NAMES = {
-    "test mode": "test_mode",
-    "model mode": "model_mode",
-    "test [Hz]": "test_hz",
-    "model [Hz]": "model_hz",
-    "error [%]": "error_percent",
-    "sigma [%]": "sigma_percent",
-    "MAC": "mac",
-    "frequency [Hz]": "frequency_hz",
-    "FRAC": "frac",
-    "response direction": "response_direction",
-    "force direction": "force_direction",
-}
 
 
 def correlation_document(correlation: Correlation, warnings: Sequence[str] = ()) -> CorrelationDocument:
@@ -36,17 +20,13 @@ def correlation_document(correlation: Correlation, warnings: Sequence[str] = ())
     warnings : sequence of str
         What else the user ought to know.
     """
-    return {
-        "schema": "modalkit.correlation/1",
-        "frequency_rms_percent": correlation.rms_percent,
-        "pairs": _rows(correlation.table),
-        "mac": correlation.mac.to_numpy().tolist(),
-        "unpaired_test": _rows(correlation.unpaired_test),
-        "unpaired_model": _rows(correlation.unpaired_model),
-        "frac": _rows(correlation.frac),
-        "model_damping": None if correlation.frfs is None else correlation.frfs.damping,
-        "warnings": list(dict.fromkeys([*correlation.warnings, *warnings])),
-    }
+    return fill(
+        CorrelationDocument,
+        correlation,
+        mac=correlation.mac.to_numpy().tolist(),
+        model_damping=None if correlation.frfs is None else correlation.frfs.damping,
+        warnings=list(dict.fromkeys([*correlation.warnings, *warnings])),
+    )
 
 
 def comparison_document(found: Comparison, warnings: Sequence[str] = ()) -> ComparisonDocument:
@@ -71,7 +51,3 @@ def comparison_document(found: Comparison, warnings: Sequence[str] = ()) -> Comp
         "degrees_of_freedom": [str(dof) for dof in found.dofs],
         "warnings": [*found.notes, *warnings],
     }
-
-
-def _rows(table: pd.DataFrame) -> Any:
-    return [{str(k): v for k, v in row.items()} for row in table.rename(columns=NAMES).to_dict("records")]

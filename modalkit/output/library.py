@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import get_args
 
+from modalkit.output.fields import fill
 from modalkit.output.schemas.effects import EffectEntry, EffectsDocument, PriorEntry
 from updating import LIBRARY, Effect, Parameter
 from updating.effects.specimens import SHOWN, example, kinds_of
@@ -26,25 +27,12 @@ def effect_document(effect: Effect) -> EffectEntry:
     for kind in kinds:
         named = {p.name: p for p in effect.parameters(example(kind))} | named
     order = [p.name for kind in reversed(kinds) for p in effect.parameters(example(kind))]
-    return {
-        "name": effect.name,
-        "channel": effect.channel,
-        "summary": effect.summary,
-        "footprint": effect.footprint,
-        "models": list(effect.models),
-        "not_for": [kind for kind in get_args(Kind) if kind not in effect.models],
-        "equivalent_to": list(effect.equivalent_to),
-        "separated_by": effect.separated_by,
-        "fidelity": effect.fidelity,
-        "damping_doubt": effect.damping_doubt,
-        "parameters": [
-            {"name": p.name, "unit": p.unit, "low": p.low, "high": p.high, "log": p.log, "why": p.why}
-            for p in (named[name] for name in dict.fromkeys(order))
-        ],
-        "labels": list(effect.labels),
-        "names": list(effect.named),
-        "of_sensor": effect.of_sensor,
-    }
+    return fill(
+        EffectEntry,
+        effect,
+        not_for=[kind for kind in get_args(Kind) if kind not in effect.models],
+        parameters=[fill(PriorEntry, named[name]) for name in dict.fromkeys(order)],
+    )
 
 
 def effects_table(record: EffectsDocument) -> str:

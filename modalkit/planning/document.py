@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from modalkit.output.schemas.plan import AdviceEntry, DesignEntry, PlanDocument
+from modalkit.output.fields import fill
+from modalkit.output.schemas.plan import AdviceEntry, DesignEntry, ForecastEntry, PlanDocument
+from modalkit.output.whole import plain
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast
 
@@ -34,43 +35,29 @@ def to_json(found: Forecast) -> PlanDocument:
 
 
 def _design_forecast(evaluation: DesignForecast) -> DesignEntry:
-    matrix = evaluation.matrix
-    return {
-        "effects": [
-            {
-                "effect": family_of(evaluation, name).cause,
-                "name": name,
-                "at": family_of(evaluation, name).at or None,
-                "outcome": evaluation.outcomes[name].kind,
-                "not_told_from": list(evaluation.outcomes[name].rivals),
-                "seen_from": statement(evaluation, name, limit.seen),
-                "separated_from": statement(evaluation, name, limit.separated),
-                "sure_from": statement(evaluation, name, limit.sure),
-                "sure": _number(limit.sure),
-                "seen": _number(limit.seen),
-                "separated": _number(limit.separated),
-                "asked": statement(evaluation, name, limit.clear),
-                "nearest": limit.nearest,
-                "nearest_sigma": _number(limit.sigma),
-                "sigma": {str(rival): _number(value) for rival, value in matrix.loc[name].items()},
-            }
-            for name, limit in evaluation.limits.items()
-        ],
-        "classes": [list(group) for group in evaluation.classes],
-        "unseen": list(evaluation.unseen),
-        "separated_share": evaluation.separated_share,
-    }
+    return fill(DesignEntry, evaluation, effects=[_forecast(evaluation, name) for name in evaluation.limits])
+
+
+def _forecast(evaluation: DesignForecast, name: str) -> ForecastEntry:
+    limit, family, outcome = evaluation.limits[name], family_of(evaluation, name), evaluation.outcomes[name]
+    return fill(
+        ForecastEntry,
+        {**vars(limit), **vars(outcome)},
+        effect=family.cause,
+        name=name,
+        at=family.at or None,
+        seen_from=statement(evaluation, name, limit.seen),
+        separated_from=statement(evaluation, name, limit.separated),
+        sure_from=statement(evaluation, name, limit.sure),
+        asked=statement(evaluation, name, limit.clear),
+        sigma=plain(evaluation.matrix.loc[name].to_dict()),
+    )
 
 
 def _advice(one: Advice) -> AdviceEntry:
-    return {
-        "change": one.change.key,
-        "measure": one.change.measure,
-        "worth": one.worth,
-        "threshold_factor": one.factor,
-        "separates": [list(pair) for pair in one.separates],
-        "then": _design_forecast(one.after),
-    }
+    return fill(
+        AdviceEntry, one, change=one.change.key, measure=one.change.measure, then=_design_forecast(one.after)
+    )
 
 
 def statement(evaluation: DesignForecast, name: str, q: float) -> str | None:
@@ -81,8 +68,3 @@ def statement(evaluation: DesignForecast, name: str, q: float) -> str | None:
 def family_of(evaluation: DesignForecast, name: str) -> Family:
     """Return the family of an effect."""
     return evaluation.found[evaluation.names.index(name)].curve.family
-
-
-def _number(value: Any) -> float | None:
-    number = float(value)
-    return number if math.isfinite(number) else None

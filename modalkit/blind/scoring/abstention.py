@@ -2,39 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.scoring.intervals import bootstrap, share, wilson
+from modalkit.blind.scoring.intervals import wilson
 from modalkit.blind.scoring.rates import asked, unknowable
+from modalkit.blind.scoring.table import Rate, measured, share
+
+AREA = "area under the curve of right against answered"
+ANSWERED, RIGHT = "answered by its own rule", "right when answered by its own rule"
+KNOWN, BOTH = "effects of the library, and none", "effects it cannot know, too"
+
+THRESHOLDS = (0.5, 0.8, 0.9, 0.95, 0.99, 0.999)
+"""Probabilities from which one might answer [-]."""
 
 
-@dataclass(frozen=True, eq=False)
-class Abstention:
-    """The abstention curve.
+def asked_of(trials: pd.DataFrame, group: str) -> pd.DataFrame:
+    """Return the trials of one of the two groups.
 
     Parameters
     ----------
-    curve : pandas.DataFrame
-        For every ``threshold`` that changes anything: ``committed`` and ``count`` right of ``total``, the share
-        ``answered``, the share ``right`` of those answered, and its 95 % Wilson interval [-].
-    area : dict
-        Mean share right over all shares answered, with its bootstrap interval [-].
-    rule : dict
-        The diagnosis's own rule: share ``answered``, and ``rate`` right with its interval [-].
+    trials : pandas.DataFrame
+        One row per trial.
+    group : {KNOWN, BOTH}
+        Those with a visible effect of the library, or without any; or also those with an effect that the diagnosis
+        cannot know: every set but an honest equivalent is false there.
     """
-
-    curve: pd.DataFrame
-    area: dict[str, Any]
-    rule: dict[str, Any]
+    return trials[asked(trials) | unknowable(trials) if group == BOTH else asked(trials)]
 
 
-def abstention(trials: pd.DataFrame, rng: np.random.Generator, *, outside: bool = False) -> Abstention:
-    """Return the abstention curve.
+def abstention(trials: pd.DataFrame, group: str, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield what is answered against how often it is right, by the probability from which one answers.
 
     A trial is answered at threshold t if the probability of the first set is at least t; no effect counts as a
     set, an answer ``unknown`` is never given, and a diagnosis that failed neither.
@@ -43,29 +44,35 @@ def abstention(trials: pd.DataFrame, rng: np.random.Generator, *, outside: bool 
     ----------
     trials : pandas.DataFrame
         One row per trial.
+    group : {KNOWN, BOTH}
+        As :func:`asked_of` takes it.
     rng : numpy.random.Generator
         For the interval of the area.
-    outside : bool
-        Whether effects that the diagnosis cannot know are among them: every set but an honest equivalent is
-        false there.
-
-    Returns
-    -------
-    Abstention
-        Of the trials with a visible effect, and without any.
 
     References
     ----------
     M. S. A. Nadeem, J.-D. Zucker, B. Hanczar, JMLR W&CP 8 (2010) 65 (accuracy-rejection curves).
     """
-    among = asked(trials) | unknowable(trials) if outside else asked(trials)
-    kept = trials[among]
+    kept = asked_of(trials, group)
     confidence, first = kept["confidence"].to_numpy(float), kept["first"].to_numpy(float)
     given = kept["commits"] | (kept["verdict"] == "none")
-    rule = share(kept["right"] & given, given)
-    rule |= {"answered": float(given.mean()) if len(kept) else np.nan, "of": len(kept)}
+    yield share(ANSWERED, group, given)
+    yield share(RIGHT, group, kept["right"], given)
+    for t in THRESHOLDS:
+        yield share(answered_from(t), group, confidence >= t)
+        yield share(right_from(t), group, first, confidence >= t)
     points = np.column_stack([confidence, first * (confidence > 0)])
-    return Abstention(curve(confidence, first), bootstrap(points, rng, statistic=area), rule)
+    yield measured(AREA, group, points, rng, statistic=area)
+
+
+def answered_from(threshold: float) -> str:
+    """Return the question how many are answered from a probability."""
+    return f"answered from a probability of {threshold:g}"
+
+
+def right_from(threshold: float) -> str:
+    """Return the question how many of those are right."""
+    return f"right when answered from a probability of {threshold:g}"
 
 
 def curve(confidence: FloatArray, right: FloatArray) -> pd.DataFrame:
@@ -77,8 +84,14 @@ def curve(confidence: FloatArray, right: FloatArray) -> pd.DataFrame:
         Probability of the first set; 0 where nothing is said at any threshold [-].
     right : (n_trials,) array
         1 where that set is the truth.
+
+    Returns
+    -------
+    pandas.DataFrame
+        For every ``threshold`` that changes anything: how many it has ``committed``, and the ``count`` of them that
+        are right; the share ``answered``, the share ``right`` of those answered, and its 95 % interval, ``low`` and
+        ``high`` [-].
     """
-    total = len(confidence)
     thresholds = np.unique(confidence[confidence > 0])[::-1]
     order = np.argsort(-confidence, kind="stable")
     committed = np.searchsorted(-confidence[order], -thresholds, side="right")
@@ -89,11 +102,10 @@ def curve(confidence: FloatArray, right: FloatArray) -> pd.DataFrame:
             "threshold": thresholds,
             "committed": committed,
             "count": count.astype(int),
-            "total": total,
-            "answered": committed / max(total, 1),
+            "answered": committed / max(len(confidence), 1),
             "right": count / np.maximum(committed, 1),
-            "low95": low,
-            "high95": high,
+            "low": low,
+            "high": high,
         }
     )
 

@@ -2,58 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
 import scipy.stats
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.outcome import Outcome
-from modalkit.blind.scoring.intervals import bootstrap, share, wilson
-from modalkit.blind.scoring.posterior import posterior
 from modalkit.blind.scoring.rates import asked
+from modalkit.blind.scoring.table import ALL, Rate, measured, number, share
 
 EDGES = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 1.0)
 """Bins of the probability stated, narrower where answers are given [-]."""
 
-LEAST = 1e-6
-"""Probability below which the log score counts no further: one bad trial must not decide it [-]."""
+
+SIZES = (1, 2, 3, 4, 5)
+"""Sizes of the 95 % set that are counted; larger ones are taken together."""
+
+LEVELS = (0.005, 0.05, 0.25, 0.5, 0.75, 0.95)
+"""P-values below which is counted [-]."""
+
+CAME_TRUE, STATED = "first set is the truth, by its probability", "mean probability of the first set"
+BRIER, LOG = "Brier score", "log score"
+ERROR, BIAS = "expected calibration error", "stated minus right"
+BELOW, UNIFORM = "p-value where nothing is hidden, below", "p-value of the Kolmogorov-Smirnov test of these"
+HOLDS, MEAN_SIZE, OVER = "set holds the truth", "mean size of the set", f"set of more than {SIZES[-1]}"
 
 
-def forecast_table(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> pd.DataFrame:
-    """Return what each answered trial forecast.
-
-    Parameters
-    ----------
-    outcomes : sequence of Outcome
-        Opened trials.
-    trials : pandas.DataFrame
-        One row per trial.
-
-    Returns
-    -------
-    pandas.DataFrame
-        By trial, of those whose truth is in the library or none: ``stated`` probability of the first set,
-        whether it is ``right``, ``brier``, ``log`` score -ln p [-], ``size`` of the smallest set of rows that
-        holds 95 % and whether it ``covers`` the truth.
-    """
-    rows = []
-    for outcome in outcomes:
-        if outcome.answer is None or trials.loc[outcome.index, "sort"] not in ("effect", "pair", "none"):
-            continue
-        stated = posterior(outcome.answer, outcome.truth)
-        size, covers = stated.credible()
-        log = -float(np.log(max(stated.truth, LEAST)))
-        first = float(stated.probability[0])
-        rows.append([outcome.index, first, stated.first_is_right, stated.brier, log, size, covers])
-    columns = ["trial", "stated", "right", "brier", "log", "size", "covers"]
-    table = pd.DataFrame(rows, columns=columns).set_index("trial")
-    return table.astype({"right": bool, "covers": bool})
-
-
-def reliability_table(stated: FloatArray, right: FloatArray) -> pd.DataFrame:
-    """Return how often a probability stated comes true, bin by bin.
+def reliability(stated: FloatArray, right: FloatArray) -> Iterator[Rate]:
+    """Yield how often a probability stated comes true, and the mean one stated, bin by bin; empty bins are left out.
 
     Parameters
     ----------
@@ -61,31 +39,14 @@ def reliability_table(stated: FloatArray, right: FloatArray) -> pd.DataFrame:
         Probabilities [-].
     right : (n_trials,) array
         1 where the set was the truth.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``low``, ``high`` of the bin, ``count`` of ``total``, mean ``stated``, ``rate`` and its interval; empty bins
-        are left out.
     """
     place = bins(stated)
-    total = np.bincount(place, minlength=len(EDGES) - 1)
-    count = np.bincount(place, right, minlength=len(EDGES) - 1)
-    mean = np.bincount(place, stated, minlength=len(EDGES) - 1) / np.maximum(total, 1)
-    low, high = wilson(count, total)
-    table = pd.DataFrame(
-        {
-            "low": EDGES[:-1],
-            "high": EDGES[1:],
-            "count": count.astype(int),
-            "total": total,
-            "stated": mean,
-            "rate": count / np.maximum(total, 1),
-            "low95": low,
-            "high95": high,
-        }
-    )
-    return table[table["total"] > 0].reset_index(drop=True)
+    for k, (low, high) in enumerate(pairwise(EDGES)):
+        mine = place == k
+        if mine.any():
+            group = f"{low:g} to {high:g}"
+            yield share(CAME_TRUE, group, right, mine)
+            yield number(STATED, group, float(stated[mine].mean()), int(mine.sum()))
 
 
 def bins(stated: FloatArray) -> np.ndarray:
@@ -117,66 +78,74 @@ def calibration_error(points: FloatArray) -> FloatArray:
     return np.asarray(np.abs(excess.reshape(samples, count)).sum(axis=1) / total, dtype=float)
 
 
-def calibration_table(
-    forecasts: pd.DataFrame, trials: pd.DataFrame, rng: np.random.Generator
-) -> pd.DataFrame:
-    """Return the scores of the probabilities with their bootstrap intervals.
+def calibration(trials: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield the scores of the probabilities.
 
     Parameters
     ----------
-    forecasts : pandas.DataFrame
-        As :func:`forecast_table` returns them.
+    trials : pandas.DataFrame
+        One row per trial; those whose truth is in the library, or none, have a forecast.
+    rng : numpy.random.Generator
+        For the intervals.
+    """
+    some = _with_forecast(trials)
+    sure = some[asked(some)]
+    visible = some["sort"].isin(["effect", "pair"]) & some["visible"]
+    groups = {
+        "visible effects, and none": sure,
+        "visible effects": some[visible],
+        "visible effects, named or in a class": some[visible & some["verdict"].isin(["named", "class"])],
+        "effects and none, faint ones too": some,
+    }
+    for group, these in groups.items():
+        points = these[["stated", "first"]].to_numpy(float)
+        brier, log = (these[name].to_numpy(float) for name in ("brier", "log"))
+        yield measured(BRIER, group, brier, rng)
+        yield measured(LOG, group, log, rng)
+        yield measured(ERROR, group, points, rng, statistic=calibration_error)
+        yield measured(BIAS, group, points[:, 0] - points[:, 1], rng)
+    yield from reliability(sure["stated"].to_numpy(float), sure["first"].to_numpy(float))
+
+
+def _with_forecast(trials: pd.DataFrame) -> pd.DataFrame:
+    return trials[trials["stated"].notna()]
+
+
+def uniformity(trials: pd.DataFrame) -> Iterator[Rate]:
+    """Yield how many p-values are below a level where nothing is hidden; of uniform ones it is the level itself."""
+    values = trials.loc[trials["sort"] == "none", "p_value"].dropna().to_numpy(float)
+    for level in LEVELS:
+        yield share(BELOW, f"{level:g}", values < level)
+    test = float(scipy.stats.kstest(values, "uniform").pvalue) if len(values) else np.nan
+    yield number(UNIFORM, ALL, test, len(values))
+
+
+def cover(trials: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield coverage and size of the smallest set of rows that holds 95 %, and of the class as stated.
+
+    Parameters
+    ----------
     trials : pandas.DataFrame
         One row per trial.
     rng : numpy.random.Generator
-        For the intervals.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``trials`` (which), ``measure``, ``total``, ``value``, ``low95``, ``high95``.
+        For the intervals of the means.
     """
-    of = trials.loc[forecasts.index]
-    visible = of["sort"].isin(["effect", "pair"]) & of["visible"]
+    some = _with_forecast(trials)
+    visible = some[some["sort"].isin(["effect", "pair"]) & some["visible"]]
+    given = visible[visible["verdict"].isin(["named", "class"])]
     groups = {
-        "visible effects, and none": asked(of),
-        "visible effects": visible,
-        "visible effects, named or in a class": visible & of["verdict"].isin(["named", "class"]),
-        "effects and none, faint ones too": pd.Series(True, index=of.index),
+        "smallest that holds 95 %, visible effects": (visible["covers"], visible["size"]),
+        "smallest that holds 95 %, none and faint too": (some["covers"], some["size"]),
+        "as stated, where an effect or a class is named": (given["holds"], given["sets"]),
     }
-    rows = []
-    for name, among in groups.items():
-        some = forecasts[among]
-        points = some[["stated", "right"]].to_numpy(float)
-        measured = {
-            "Brier score": bootstrap(some["brier"].to_numpy(float), rng),
-            "log score": bootstrap(some["log"].to_numpy(float), rng),
-            "expected calibration error": bootstrap(points, rng, statistic=calibration_error),
-            "stated minus right": bootstrap(points[:, 0] - points[:, 1], rng),
-        }
-        rows += [{"trials": name, "measure": measure} | values for measure, values in measured.items()]
-    return pd.DataFrame(rows)
+    for group, (covers, size) in groups.items():
+        yield share(HOLDS, group, covers)
+        yield measured(MEAN_SIZE, group, size.to_numpy(float), rng)
+        for n in SIZES:
+            yield share(of_size(n), group, size == n)
+        yield share(OVER, group, size > SIZES[-1])
 
 
-def uniformity_table(trials: pd.DataFrame) -> pd.DataFrame:
-    """Return whether the p-value is uniform where nothing is hidden.
-
-    Parameters
-    ----------
-    trials : pandas.DataFrame
-        One row per trial.
-
-    Returns
-    -------
-    pandas.DataFrame
-        For each ``level`` the share of p-values below it with its interval; uniform ones have the level itself.
-        The ``ks_p`` of the Kolmogorov-Smirnov test against a uniform distribution stands in every row.
-    """
-    values = trials.loc[trials["sort"] == "none", "p_value"].dropna().to_numpy(float)
-    ks = float(scipy.stats.kstest(values, "uniform").pvalue) if len(values) else np.nan
-    return pd.DataFrame(
-        [
-            {"level": level} | share(values < level) | {"ks_p": ks}
-            for level in (0.005, 0.05, 0.25, 0.5, 0.75, 0.95)
-        ]
-    )
+def of_size(sets: int) -> str:
+    """Return the question how many sets have a size."""
+    return f"set of {sets}"

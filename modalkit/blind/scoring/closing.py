@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.scoring.intervals import bootstrap, share
 from modalkit.blind.scoring.judge import holds, label, sort_of
+from modalkit.blind.scoring.table import ALL, Rate, measured, number, share
 
 WITHIN = 10.0
 """Points of per cent within which a prediction counts as met [%]."""
@@ -92,8 +92,13 @@ def comparable(table: pd.DataFrame) -> pd.DataFrame:
     return table[(table["said"] + table["true"]).notna() & (table["metric"] == table["true_metric"])]
 
 
-def closing_summary(table: pd.DataFrame, rng: np.random.Generator) -> pd.DataFrame:
-    """Return how well the shrinkage is predicted.
+MET, MISSED = "closes as stated, within 10 points of per cent", "mean |stated - true| closing [%]"
+STATED, TRUE, BEYOND = "mean closing stated [%]", "mean closing true [%]", "mean closing above the band [%]"
+INSIDE = "true closing inside its 95 % interval"
+
+
+def closing(table: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield how well the shrinkage is predicted.
 
     Parameters
     ----------
@@ -101,38 +106,21 @@ def closing_summary(table: pd.DataFrame, rng: np.random.Generator) -> pd.DataFra
         As :func:`closing_table` returns it.
     rng : numpy.random.Generator
         For the intervals.
-
-    Returns
-    -------
-    pandas.DataFrame
-        By group of trials: mean \\|said - true\\| [points of %] with its interval, mean ``statement`` and ``true``,
-        ``count`` of ``total`` within 10 points, ``covered`` of ``intervals``.
     """
     stated = comparable(table)
     held = stated["held"].astype(bool)
-    groups = {"all": stated, "answer holds the truth": stated[held], "answer is false": stated[~held]}
     outside = stated["sort"].isin(["outside", "left out"])
-    groups["wrong name for what cannot be known"] = stated[outside & ~held]
-    groups |= {f"gap of {metric}": some for metric, some in stated.groupby("metric")}
-    return pd.DataFrame(
-        [{"trials": name} | _summary(some, rng) for name, some in groups.items() if len(some)]
-    )
-
-
-def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
-    distance = (some["said"] - some["true"]).abs().to_numpy(float)
-    mean = bootstrap(distance, rng)
-    covered = some["covered"].dropna().astype(bool)
-    inside = share(covered)
-    return (
-        {
-            "mean_difference": mean["value"],
-            "mean_low95": mean["low95"],
-            "mean_high95": mean["high95"],
-            "said": float(some["said"].mean()),
-            "true": float(some["true"].mean()),
-            "beyond": float(some["beyond"].mean()),
-        }
-        | share(distance <= WITHIN)
-        | {f"covered_{key}": value for key, value in inside.items()}
-    )
+    groups = {
+        ALL: stated,
+        "answer holds the truth": stated[held],
+        "answer is false": stated[~held],
+        "wrong name for what cannot be known": stated[outside & ~held],
+    } | {f"gap of {metric}": some for metric, some in stated.groupby("metric")}
+    for group, some in groups.items():
+        if len(some):
+            distance = (some["said"] - some["true"]).abs().to_numpy(float)
+            yield share(MET, group, distance <= WITHIN)
+            yield measured(MISSED, group, distance, rng)
+            for question, column in ((STATED, "said"), (TRUE, "true"), (BEYOND, "beyond")):
+                yield number(question, group, some[column].mean(), int(some[column].notna().sum()))
+            yield share(INSIDE, group, some["covered"].dropna().astype(bool))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,11 +26,6 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def numbers(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row of numbers as JSON can carry it."""
-    return {key: _plain(value) for key, value in values.items()}
-
-
 def outcome_documents(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
     """Return truth, answer and seal of every trial; not the time it took, which is no part of the result."""
     return [_outcome(outcome) for outcome in outcomes]
@@ -42,6 +37,10 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
     return whole | {"commitment": outcome.sealed.commitment}
 
 
-def nested(matrix: pd.DataFrame) -> dict[str, dict[str, float]]:
-    """Return a matrix as an object of objects, without its zeros."""
-    return {str(name): {str(k): _plain(v) for k, v in row.items() if v} for name, row in matrix.iterrows()}
+def nested(answers: pd.DataFrame) -> dict[str, dict[str, float]]:
+    """Return hidden effect, then answer: trials, a class counted by the shares of its sets."""
+    found: dict[str, dict[str, float]] = {}
+    summed = answers.groupby(["hidden", "answer"], as_index=False)["share"].sum()
+    for hidden, answer, value in summed.itertuples(index=False):
+        found.setdefault(hidden, {})[answer] = value
+    return found

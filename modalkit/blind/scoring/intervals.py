@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +19,9 @@ Z95 = 1.959963984540054
 
 RESAMPLES = 1000
 """Samples drawn with replacement for a bootstrap [-]."""
+
+Statistic = Callable[[FloatArray], FloatArray]
+"""Takes (n_samples, n_trials, ...) to (n_samples,)."""
 
 LARGEST = 1_000_000
 """Numbers held at a time in a bootstrap [-]."""
@@ -53,34 +55,6 @@ def wilson(count: ArrayLike, total: ArrayLike) -> tuple[FloatArray, FloatArray]:
     return np.where(empty, np.nan, low), np.where(empty, np.nan, high)
 
 
-def share(hit: ArrayLike, among: ArrayLike | None = None) -> dict[str, Any]:
-    """Return a share with its interval.
-
-    Parameters
-    ----------
-    hit : (n_trials,) array_like
-        Whether it is so, or the credit between 0 and 1.
-    among : (n_trials,) array_like of bool, optional
-        Trials that are asked; default all.
-
-    Returns
-    -------
-    dict
-        ``count`` of ``total``, ``rate``, ``low95``, ``high95``.
-    """
-    hits = np.asarray(hit, dtype=float)
-    asked = hits if among is None else hits[np.asarray(among, dtype=bool)]
-    count, total = float(asked.sum()), len(asked)
-    low, high = wilson(count, total)
-    return {
-        "count": int(count) if count.is_integer() else count,
-        "total": total,
-        "rate": count / total if total else math.nan,
-        "low95": float(low),
-        "high95": float(high),
-    }
-
-
 def resampled(total: int, rng: np.random.Generator) -> Iterator[IntArray]:
     """Yield the indices of bootstrap samples of trials, (n_samples, total) at a time, as memory allows."""
     at_a_time = max(1, min(RESAMPLES, LARGEST // total))
@@ -92,8 +66,8 @@ def bootstrap(
     values: FloatArray,
     rng: np.random.Generator,
     *,
-    statistic: Callable[[FloatArray], FloatArray] | None = None,
-) -> dict[str, Any]:
+    statistic: Statistic | None = None,
+) -> tuple[float, float, float]:
     """Return a statistic with its 95 % percentile interval over trials.
 
     Parameters
@@ -103,30 +77,29 @@ def bootstrap(
     rng : numpy.random.Generator
         Draws the samples.
     statistic : callable, optional
-        Takes (n_samples, n_trials, ...) to (n_samples,); default the mean.
+        Default the mean.
 
     Returns
     -------
-    dict
-        ``total``, ``value``, ``low95``, ``high95``.
+    value, low, high : float
+        nan without trials.
 
     References
     ----------
     B. Efron, R. J. Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13.
     """
-    total = len(values)
-    if not total:
-        return {"total": 0, "value": math.nan, "low95": math.nan, "high95": math.nan}
+    if not len(values):
+        return math.nan, math.nan, math.nan
     measure = statistic or _mean
-    many = np.concatenate([measure(values[part]) for part in resampled(total, rng)])
+    many = np.concatenate([measure(values[part]) for part in resampled(len(values), rng)])
     low, high = np.nanquantile(many, [0.025, 0.975]) if np.isfinite(many).any() else (math.nan, math.nan)
-    return {
-        "total": total,
-        "value": float(measure(values[None])[0]),
-        "low95": float(low),
-        "high95": float(high),
-    }
+    return float(measure(values[None])[0]), float(low), float(high)
 
 
 def _mean(values: FloatArray) -> FloatArray:
     return np.asarray(values.mean(axis=1), dtype=float)
+
+
+def median(values: FloatArray) -> FloatArray:
+    """Return the median of each sample, (n_samples, n_trials) to (n_samples,)."""
+    return np.asarray(np.median(values, axis=1), dtype=float)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pandas as pd
 
+from modalkit.blind.scoring.page import sections
 from modalkit.blind.scoring.score import Score
-from modalkit.blind.scoring.sections import sections
 
 BEGIN, END = "<!-- score: begin -->", "<!-- score: end -->"
 """Between these two lines the docs carry a score."""

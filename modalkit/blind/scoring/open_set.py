@@ -2,40 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
 import scipy.stats
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.scoring.intervals import bootstrap, share
-from modalkit.blind.scoring.rates import unknowable
+from modalkit.blind.scoring.rates import effect_group, unknowable
+from modalkit.blind.scoring.table import ALL, Rate, measured, share
+
+HONEST = "cannot be known: unknown, or an honest equivalent"
+AREA = "cannot be known: area under the curve of detection"
+ANSWERS = ("unknown", "equivalent", "wrong name", "wrong class", "none", "failed")
 
 
-@dataclass(frozen=True, eq=False)
-class OpenSet:
-    """Detection of what is not in the library.
-
-    Parameters
-    ----------
-    effects : pandas.DataFrame
-        By hidden effect, and of all: counts and shares of ``unknown``, ``equivalent``, ``wrong name``,
-        ``wrong class``, ``none``, ``failed``, and the share that is honest with its interval.
-    roc : pandas.DataFrame
-        ``false`` alarms on known effects against ``found`` unknown ones, by ``threshold`` of 1 - p of fit [-].
-    area : dict
-        Area under that curve with its bootstrap interval; 0.5 is chance [-].
-    """
-
-    effects: pd.DataFrame
-    roc: pd.DataFrame
-    area: dict[str, Any]
-
-
-def open_set(trials: pd.DataFrame, rng: np.random.Generator) -> OpenSet:
-    """Return how well the diagnosis knows what it does not know.
+def open_set(trials: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield how well the diagnosis knows what it does not know, by hidden effect.
 
     Parameters
     ----------
@@ -46,27 +29,45 @@ def open_set(trials: pd.DataFrame, rng: np.random.Generator) -> OpenSet:
     """
     among = trials[unknowable(trials)]
     groups = [(f"all, {sort}", some) for sort, some in among.groupby("sort") if some["effect"].nunique() > 1]
-    groups += [(f"{effect} ({sort})", some) for (sort, effect), some in among.groupby(["sort", "effect"])]
-    effects = pd.DataFrame([{"effect": name} | _row(some) for name, some in groups])
+    groups += [(effect_group(*map(str, key)), some) for key, some in among.groupby(["sort", "effect"])]
+    for group, some in groups:
+        yield share(HONEST, group, some["right"])
+        for name, mark in _marks(some).items():
+            yield share(answer(name), group, mark)
+    yield measured(AREA, ALL, detection(trials), rng, statistic=roc_area)
+
+
+def answer(name: str) -> str:
+    """Return the question how often what cannot be known is given one of the ``ANSWERS``."""
+    return f"cannot be known: {name}"
+
+
+def detection(trials: pd.DataFrame) -> FloatArray:
+    """Return how unknown each trial looks, 1 - p of the fit of the best row, and 1 where it is.
+
+    Returns
+    -------
+    (n_trials, 2) array
+        Of visible effects with a fit [-].
+    """
     known = trials["sort"].isin(["effect", "pair"]) & trials["visible"]
     scored = trials[(known | unknowable(trials)) & trials["fit"].notna()]
     positive = scored["sort"].isin(["outside", "left out"]).to_numpy(float)
-    points = np.column_stack([1.0 - scored["fit"].to_numpy(float), positive])
-    return OpenSet(effects, roc_curve(points[:, 0], points[:, 1]), bootstrap(points, rng, statistic=roc_area))
+    return np.column_stack([1.0 - scored["fit"].to_numpy(float), positive])
 
 
-def _row(some: pd.DataFrame) -> dict[str, Any]:
+def _marks(some: pd.DataFrame) -> dict[str, pd.Series]:
     answers = some["verdict"].isin(["named", "class"])
     wrong = answers & ~some["holds"]
-    counts = {
-        "unknown": some["verdict"] == "unknown",
-        "equivalent": answers & some["holds"],
-        "wrong name": wrong & some["commits"],
-        "wrong class": wrong & ~some["commits"],
-        "none": some["verdict"] == "none",
-        "failed": some["verdict"] == "failed",
-    }
-    return {name: int(hit.sum()) for name, hit in counts.items()} | share(some["right"])
+    marks = (
+        some["verdict"] == "unknown",
+        answers & some["holds"],
+        wrong & some["commits"],
+        wrong & ~some["commits"],
+        some["verdict"] == "none",
+        some["verdict"] == "failed",
+    )
+    return dict(zip(ANSWERS, marks, strict=True))
 
 
 def roc_curve(value: FloatArray, positive: FloatArray) -> pd.DataFrame:
@@ -78,6 +79,11 @@ def roc_curve(value: FloatArray, positive: FloatArray) -> pd.DataFrame:
         The larger, the more it looks unknown.
     positive : (n_trials,) array
         1 where it is.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``false`` alarms on known effects and unknown ones ``found``, by ``threshold`` [-].
     """
     thresholds = np.unique(value)[::-1]
     over = value[None, :] >= thresholds[:, None]

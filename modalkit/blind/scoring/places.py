@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,10 @@ import pandas as pd
 
 from modalkit.blind.answer import Answer
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.scoring.intervals import bootstrap, share
+from modalkit.blind.scoring.intervals import median
 from modalkit.blind.scoring.judge import holds, label, sort_of
 from modalkit.blind.scoring.severity import true_row
+from modalkit.blind.scoring.table import ALL, Rate, measured, share
 from modalkit.blind.trial import Truth
 
 NEAR = 0.05
@@ -110,8 +111,14 @@ def _covered(outcome: Outcome) -> bool | None:
     return all(inside) if inside else None
 
 
-def place_summary(places: pd.DataFrame, rng: np.random.Generator) -> pd.DataFrame:
-    """Return errors of place by effect, of all that the answer held, and of what the library lacks.
+NEAREST, FIRST = "nearest place within 5 % of the span", "first place within 5 % of the span"
+NEAREST_ERROR, FIRST_ERROR = "median error of the nearest place", "median error of the first place"
+INSIDE = "place inside its 95 % intervals"
+CHANNEL = "channel is right"
+
+
+def place_errors(places: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield errors of place, as a share of the span: by effect, of all held by the answer, of what the library lacks.
 
     Parameters
     ----------
@@ -119,12 +126,6 @@ def place_summary(places: pd.DataFrame, rng: np.random.Generator) -> pd.DataFram
         As :func:`place_table` returns it.
     rng : numpy.random.Generator
         For the intervals.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``effect``; medians of both errors [-] with intervals; ``count`` of ``total`` whose nearest place is within
-        5 % of the span, ``first_count`` those whose first place is; ``covered`` of ``intervals``.
     """
     held = places[places["held"].astype(bool)]
     outside = places[~places["held"].astype(bool) & places["sort"].isin(["outside", "left out"])]
@@ -133,26 +134,16 @@ def place_summary(places: pd.DataFrame, rng: np.random.Generator) -> pd.DataFram
         ("outside or left out, not named", outside),
         *held.groupby("effect"),
     ]
-    return pd.DataFrame([{"effect": name} | _summary(some, rng) for name, some in groups if len(some)])
+    for group, some in ((str(name), some) for name, some in groups if len(some)):
+        for within, error, column in ((NEAREST, NEAREST_ERROR, "nearest"), (FIRST, FIRST_ERROR, "first")):
+            values = some[column].to_numpy(float)
+            yield share(within, group, values <= NEAR)
+            yield measured(error, group, values, rng, statistic=median)
+        yield share(INSIDE, group, some["covered"].dropna().astype(bool))
 
 
-def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
-    row: dict[str, Any] = {}
-    for which in ("nearest", "first"):
-        middle = bootstrap(some[which].to_numpy(float), rng, statistic=lambda v: np.median(v, axis=1))
-        row |= {f"{which}_median": middle["value"]}
-        row |= {f"{which}_low95": middle["low95"], f"{which}_high95": middle["high95"]}
-    covered = some["covered"].dropna().astype(bool)
-    row |= share(some["nearest"] <= NEAR)
-    return row | {
-        "first_count": int((some["first"] <= NEAR).sum()),
-        "covered": int(covered.sum()),
-        "intervals": len(covered),
-    }
-
-
-def channel_table(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> pd.DataFrame:
-    """Return whether the channel is right, by true channel, for visible effects of the library.
+def channel_rates(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> Iterator[Rate]:
+    """Yield whether the channel is right, by true channel (of a pair: either one), for visible effects of the library.
 
     Parameters
     ----------
@@ -160,11 +151,6 @@ def channel_table(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> pd.DataF
         Opened trials.
     trials : pandas.DataFrame
         One row per trial.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``channel`` (of a pair: either one), ``count`` of ``total``, ``rate`` and its interval.
     """
     rows = []
     for outcome in outcomes:
@@ -174,8 +160,9 @@ def channel_table(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> pd.DataF
         own = sorted({_CHANNEL[name] for name in outcome.truth.effects if name in _CHANNEL})
         rows.append((" + ".join(own), outcome.answer.channel in channels(outcome.truth)))
     table = pd.DataFrame(rows, columns=["channel", "right"])
-    groups = [("all", table), *table.groupby("channel")]
-    return pd.DataFrame([{"channel": name} | share(some["right"]) for name, some in groups if len(some)])
+    for group, some in [(ALL, table), *table.groupby("channel")]:
+        if len(some):
+            yield share(CHANNEL, str(group), some["right"])
 
 
 def channels(truth: Truth) -> set[str]:

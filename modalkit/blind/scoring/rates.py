@@ -1,44 +1,52 @@
-"""How often: every question with its count, total, share and interval."""
+"""How often: what is asked of all trials, of groups of them, and of each hidden effect."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pandas as pd
 
-from modalkit.blind.scoring.intervals import share
+from modalkit.blind.scoring.table import ALL, Rate, Rates, number, share
 
 Questions = dict[str, tuple[pd.Series, pd.Series]]
+"""Question to whether it is so, or the credit between 0 and 1, and the trials that are asked; both by trial."""
+
+TOP = "most probable answer is the truth"
+RIGHT = "answer is true (named, in the class, or none)"
+CREDIT = "a class counted by its share"
+GIVEN = "commits to one answer, trials without effect among them"
+OUTSIDE, LEFT_OUT = "effect outside the library", "effect left out of the library"
+
+TRUE_OF_SHOWN = "effect: true answer where the data show it"
+SETS = "effect: mean number of sets in an answer"
+
+HEADLINE = {
+    TOP: (TOP, ALL),
+    "true up to the class it gives": (RIGHT, ALL),
+    "commits to one answer": ("commits to one answer", ALL),
+    "right when it commits": ("right when it commits, effect of the library", ALL),
+    "false alarm where nothing is hidden": ("false alarm on none", ALL),
+    "outside the library: unknown, or an honest equivalent": (
+        f"{OUTSIDE}: unknown or an honest equivalent",
+        ALL,
+    ),
+    "outside the library: given a wrong name": (f"{OUTSIDE}: wrong name", ALL),
+    "left out of the library: unknown, or an honest equivalent": (
+        f"{LEFT_OUT}: unknown or an honest equivalent",
+        ALL,
+    ),
+    "left out of the library: given a wrong name": (f"{LEFT_OUT}: wrong name", ALL),
+    "set of 95 % holds the truth": ("set holds the truth", "smallest that holds 95 %, visible effects"),
+    "parameter inside its 95 % interval": ("parameter inside its 95 % interval", ALL),
+    "place within 5 % of the span": ("nearest place within 5 % of the span", "all held by the answer"),
+}
+"""The numbers to read first: how they are called, and the question and group that they are."""
 
 
-def rate_table(questions: Questions) -> pd.DataFrame:
-    """Return one row per question.
-
-    Parameters
-    ----------
-    questions : mapping of str to (hit, among)
-        Both by trial, bool, or ``hit`` a credit between 0 and 1.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``count``, ``total``, ``rate``, ``low95``, ``high95`` by question.
-    """
-    rows = {question: share(hit, among) for question, (hit, among) in questions.items()}
-    table = pd.DataFrame.from_dict(
-        rows, orient="index", columns=["count", "total", "rate", "low95", "high95"]
-    )
-    table.index.name = "question"
-    return table
-
-
-def rates(trials: pd.DataFrame) -> pd.DataFrame:
-    """Return how often answers are right, committed, false, and given at all.
-
-    Parameters
-    ----------
-    trials : pandas.DataFrame
-        As :func:`modalkit.blind.scoring.trials.trial_table` returns them.
-    """
-    return rate_table(_about_known(trials) | _about_silence(trials) | _about_outside(trials))
+def headline(rates: Rates) -> dict[str, Rate]:
+    """Return the numbers to read first by name; those that nothing was asked of are left out."""
+    found = {name: rates.get(*key) for name, key in HEADLINE.items()}
+    return {name: row for name, row in found.items() if row is not None and row.total}
 
 
 def asked(trials: pd.DataFrame) -> pd.Series:
@@ -51,16 +59,27 @@ def unknowable(trials: pd.DataFrame) -> pd.Series:
     return trials["sort"].isin(["outside", "left out"]) & trials["visible"]
 
 
+def questions(trials: pd.DataFrame) -> Questions:
+    """Return how often answers are right, committed, false, and given at all.
+
+    Parameters
+    ----------
+    trials : pandas.DataFrame
+        As :func:`modalkit.blind.scoring.trials.trial_table` returns them.
+    """
+    return _about_known(trials) | _about_silence(trials) | _about_outside(trials)
+
+
 def _about_known(trials: pd.DataFrame) -> Questions:
     with_answer, kind = asked(trials), trials["verdict"] == "class"
     seen = with_answer & (trials["sort"] != "none")
     answers = trials["verdict"].isin(["named", "class"])
     return {
-        "most probable answer is the truth": (trials["top"], with_answer),
-        "answer is true (named, in the class, or none)": (trials["right"], with_answer),
-        "a class counted by its share": (trials["credit"], with_answer),
-        "most probable answer is the truth, one effect": (trials["top"], seen & (trials["sort"] == "effect")),
-        "most probable answer is the truth, a pair": (trials["top"], seen & (trials["sort"] == "pair")),
+        TOP: (trials["top"], with_answer),
+        RIGHT: (trials["right"], with_answer),
+        CREDIT: (trials["credit"], with_answer),
+        f"{TOP}, one effect": (trials["top"], seen & (trials["sort"] == "effect")),
+        f"{TOP}, a pair": (trials["top"], seen & (trials["sort"] == "pair")),
         "commits to one answer": (trials["commits"], seen),
         "right when it commits": (trials["holds"], trials["commits"]),
         "right when it commits, effect of the library": (trials["holds"], trials["commits"] & seen),
@@ -86,92 +105,83 @@ def _about_silence(trials: pd.DataFrame) -> Questions:
 
 
 def _about_outside(trials: pd.DataFrame) -> Questions:
-    questions: Questions = {}
-    for sort, words in (
-        ("outside", "effect outside the library"),
-        ("left out", "effect left out of the library"),
-    ):
+    asked_of: Questions = {}
+    for sort, words in (("outside", OUTSIDE), ("left out", LEFT_OUT)):
         these = unknowable(trials) & (trials["sort"] == sort)
-        questions |= {
+        wrong = ~trials["holds"]
+        asked_of |= {
             f"{words}: unknown or an honest equivalent": (trials["right"], these),
             f"{words}: unknown": (trials["verdict"] == "unknown", these),
-            f"{words}: wrong name": (trials["commits"] & ~trials["holds"], these),
-            f"{words}: wrong class": (
-                (trials["verdict"] == "class") & ~trials["commits"] & ~trials["holds"],
-                these,
-            ),
+            f"{words}: wrong name": (trials["commits"] & wrong, these),
+            f"{words}: wrong class": ((trials["verdict"] == "class") & ~trials["commits"] & wrong, these),
             f"{words}: called none": (trials["verdict"] == "none", these),
         }
-    return questions
+    return asked_of
 
 
-def group_table(trials: pd.DataFrame) -> pd.DataFrame:
-    """Return how often right by level, kind of structure, baseline, and absolute level of the FRFs.
+def pair_questions(trials: pd.DataFrame) -> Questions:
+    """Return what became of two effects at once, where the data show both."""
+    pairs = (trials["sort"] == "pair") & trials["visible"]
+    commits, holds, verdict = trials["commits"], trials["holds"], trials["verdict"]
+    marks = {
+        "the pair named alone": commits & holds,
+        "a class that holds it": holds & ~commits,
+        "another set named": commits & ~holds,
+        "a class without it": (verdict == "class") & ~holds & ~commits,
+        "unknown": verdict == "unknown",
+        "none": verdict == "none",
+        "failed": verdict == "failed",
+    }
+    return {f"pair: {name}": (mark, pairs) for name, mark in marks.items()}
 
-    Parameters
-    ----------
-    trials : pandas.DataFrame
-        One row per trial.
 
-    Returns
-    -------
-    pandas.DataFrame
-        ``group``, ``value``, and for each of ``top`` (most probable answer), ``right`` (up to the class),
-        ``credit`` (class by its share) and ``commits`` its share and interval, of the trials that
-        :func:`asked` returns; levels that hold faint effects count those that the data show.
+def rates(trials: pd.DataFrame) -> Iterator[Rate]:
+    """Yield every question, of all trials that ask it."""
+    for name, (hit, among) in (questions(trials) | pair_questions(trials)).items():
+        yield share(name, ALL, hit, among)
+
+
+def rates_by_group(trials: pd.DataFrame) -> Iterator[Rate]:
+    """Yield how often right by level, kind of structure, baseline, and absolute level of the FRFs.
+
+    Levels that hold faint effects count those that the data show.
     """
     kept = trials[asked(trials)]
-    rows = []
-    for group in ("level", "kind", "baseline", "calibrated"):
-        for value in sorted(kept[group].unique(), key=str):
-            some = kept[kept[group] == value]
-            row = {"group": group, "value": str(value), "total": len(some)}
-            for column in ("top", "right", "credit", "commits"):
-                part = share(some[column])
-                row |= {
-                    column: part["rate"],
-                    f"{column} low95": part["low95"],
-                    f"{column} high95": part["high95"],
-                }
-            rows.append(row)
-    return pd.DataFrame(rows)
+    for column in ("level", "kind", "baseline", "calibrated"):
+        for value in sorted(kept[column].unique(), key=str):
+            some = kept[kept[column] == value]
+            group = f"{column}: { {'True': 'yes', 'False': 'no'}.get(str(value), value) }"
+            for question, mark in ((TOP, "top"), (RIGHT, "right"), (CREDIT, "credit"), (GIVEN, "commits")):
+                yield share(question, group, some[mark])
 
 
-def effect_table(trials: pd.DataFrame) -> pd.DataFrame:
-    """Return what became of each hidden effect.
+def effect_group(sort: str, effect: str) -> str:
+    """Return the group of the trials of an effect; the same one in the library and left out of it are two."""
+    return f"{effect} ({sort})" if sort in ("outside", "left out") else effect
 
-    Parameters
-    ----------
-    trials : pandas.DataFrame
-        One row per trial.
 
-    Returns
-    -------
-    pandas.DataFrame
-        By effect, all of its trials: counts of what is said, ``top``, ``right`` and ``credit`` with the share
-        of ``right`` among the ``visible`` ones and its interval, and the mean size of a class.
-    """
-    answered = trials["verdict"].isin(["named", "class"])
-    marks = pd.DataFrame(
-        {
-            "trials": 1,
-            "visible": trials["visible"],
-            "top": trials["top"],
-            "right": trials["right"],
-            "credit": trials["credit"],
-            "named right": trials["commits"] & trials["holds"],
-            "class with it": answered & ~trials["commits"] & trials["holds"],
-            "wrong": answered & ~trials["holds"],
-            "unknown": trials["verdict"] == "unknown",
-            "none": trials["verdict"] == "none",
-            "failed": trials["verdict"] == "failed",
-        }
-    )
-    table = marks.groupby([trials["sort"], trials["effect"]]).sum()
-    table = table.astype({name: int for name in table.columns if name != "credit"})
-    due = trials[trials["visible"] | (trials["sort"] == "none")]
-    shares = {key: share(some["right"]) for key, some in due.groupby(["sort", "effect"])}
-    for name in ("rate", "low95", "high95"):
-        table[name] = pd.Series({key: row[name] for key, row in shares.items()}, dtype=float)
-    sizes = trials["sets"].where(answered).groupby([trials["sort"], trials["effect"]]).mean()
-    return table.assign(**{"mean class size": sizes}).reset_index()
+def rates_by_effect(trials: pd.DataFrame) -> Iterator[Rate]:
+    """Yield what became of each hidden effect, in all of its trials."""
+    for (sort, effect), some in trials.groupby(["sort", "effect"]):
+        group = effect_group(str(sort), str(effect))
+        for name, mark in _marks(some).items():
+            yield share(f"effect: {name}", group, mark)
+        yield share(TRUE_OF_SHOWN, group, some["right"], some["visible"] | (some["sort"] == "none"))
+        answered = some["verdict"].isin(["named", "class"])
+        yield number(SETS, group, some.loc[answered, "sets"].mean(), int(answered.sum()))
+
+
+def _marks(some: pd.DataFrame) -> dict[str, pd.Series]:
+    answered = some["verdict"].isin(["named", "class"])
+    return {
+        "visible": some["visible"],
+        "top": some["top"],
+        "right": some["right"],
+        "credit": some["credit"],
+        "named right": some["commits"] & some["holds"],
+        "class with it": answered & ~some["commits"] & some["holds"],
+        "wrong": answered & ~some["holds"],
+        "unknown": some["verdict"] == "unknown",
+        "none": some["verdict"] == "none",
+        "failed": some["verdict"] == "failed",
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ import pandas as pd
 
 from modalkit.blind.answer import Row
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.scoring.intervals import bootstrap, share
+from modalkit.blind.scoring.intervals import median
 from modalkit.blind.scoring.judge import accepted, holds, label
+from modalkit.blind.scoring.table import ALL, Rate, measured, number, share
 
 NOT_SCORED = (
     *("local_stiffness.extent", "local_stiffness.extent_y", "local_stiffness.loss"),
@@ -83,37 +84,32 @@ def true_row(outcome: Outcome) -> Row | None:
     return answer.row(own) if own in answer.sets and accepted(own, truth) else None
 
 
-def severity_summary(severity: pd.DataFrame, rng: np.random.Generator) -> pd.DataFrame:
-    """Return errors and coverage by parameter, and of all.
+INSIDE, ERROR, BIAS = (
+    "parameter inside its 95 % interval",
+    "median error of a parameter",
+    "mean error of a parameter",
+)
+SAME_POINTS = "the same points"
+
+
+def severity(table: pd.DataFrame, points: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
+    """Yield errors and coverage by parameter, and of all; and how often lists of points are right.
 
     Parameters
     ----------
-    severity : pandas.DataFrame
-        As :func:`severity_table` returns it.
+    table, points : pandas.DataFrame
+        As :func:`severity_table` and :func:`point_table` return them.
     rng : numpy.random.Generator
         For the intervals of the medians.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``parameter``; median of \\|error\\| [-] with its bootstrap interval, mean error (``bias``), and ``count`` of
-        ``total`` intervals that cover the truth, with the share's interval.
     """
-    groups = [("all", severity), *severity.groupby("parameter")]
-    return pd.DataFrame([{"parameter": name} | _summary(some, rng) for name, some in groups if len(some)])
-
-
-def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
-    errors = some["error"].dropna().to_numpy(float)
-    middle = bootstrap(np.abs(errors), rng, statistic=lambda v: np.median(v, axis=1))
-    covered = some["covered"].dropna().astype(bool)
-    return {
-        "errors": len(errors),
-        "median_error": middle["value"],
-        "median_low95": middle["low95"],
-        "median_high95": middle["high95"],
-        "bias": float(errors.mean()) if len(errors) else np.nan,
-    } | share(covered)
+    for group, some in [(ALL, table), *table.groupby("parameter")]:
+        if len(some):
+            errors = some["error"].dropna().to_numpy(float)
+            yield share(INSIDE, str(group), some["covered"].dropna().astype(bool))
+            yield measured(ERROR, str(group), np.abs(errors), rng, statistic=median)
+            yield number(BIAS, str(group), float(errors.mean()) if len(errors) else np.nan, len(errors))
+    for group, some in points.groupby("parameter"):
+        yield share(SAME_POINTS, str(group), some["same"])
 
 
 def point_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""One table row per trial: what was hidden beside what was said."""
+"""What was hidden beside what was said, trial by trial."""
 
 from __future__ import annotations
 
@@ -10,7 +10,16 @@ import pandas as pd
 
 from modalkit.blind.answer import Answer
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.scoring.judge import commits, credit, holds, is_right, label, sort_of, top_is_right
+from modalkit.blind.scoring.judge import (
+    accepted,
+    commits,
+    credit,
+    holds,
+    is_right,
+    label,
+    sort_of,
+    top_is_right,
+)
 from modalkit.blind.scoring.posterior import Posterior, posterior
 from modalkit.blind.trial import Truth
 
@@ -37,6 +46,12 @@ _FAILED: dict[str, Any] = {
     "fit": np.nan,
 }
 
+_NOT_FORECAST = dict.fromkeys(("stated", "brier", "log", "size", "covers"), np.nan)
+"""Of a diagnosis that failed, and where the library cannot answer."""
+
+LEAST = 1e-6
+"""Probability below which the log score counts no further: one bad trial must not decide it [-]."""
+
 
 def trial_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     """Return one row per trial.
@@ -54,7 +69,9 @@ def trial_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
         ``p_value``, ``fit`` of the best row), judgement (``right``, ``top``, ``holds``, ``commits``,
         ``credit`` of a class counted fairly), and what the probabilities say whatever the verdict:
         ``confidence`` of the most probable set, whether that is right (``first``), and the ``probability`` of
-        the truth.
+        the truth. Where the truth is in the library, or none: ``stated`` probability of the most probable set, its
+        ``brier`` and ``log`` score -ln p [-], ``size`` of the smallest set of rows that holds 95 %, and whether that
+        ``covers`` the truth.
     """
     rows = [_row(outcome) for outcome in outcomes]
     return pd.DataFrame(rows).set_index("trial")
@@ -77,7 +94,7 @@ def _row(outcome: Outcome) -> dict[str, Any]:
         "calibrated": truth.calibrated,
         "gap_percent": truth.gap_percent,
     }
-    statement = _FAILED if answer is None else _statement(answer, truth)
+    statement = _FAILED | _NOT_FORECAST if answer is None else _statement(answer, truth)
     return hidden | statement | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
 
 
@@ -106,6 +123,18 @@ def _statement(answer: Answer, truth: Truth) -> dict[str, Any]:
         "probability": stated.truth,
         "p_value": answer.p_value,
         "fit": answer.ranking[0].fit if answer.ranking else np.nan,
+        **(_forecast(stated) if sort_of(truth) in ("effect", "pair", "none") else _NOT_FORECAST),
+    }
+
+
+def _forecast(stated: Posterior) -> dict[str, float]:
+    size, covers = stated.credible()
+    return {
+        "stated": float(stated.probability[0]),
+        "brier": stated.brier,
+        "log": -float(np.log(max(stated.truth, LEAST))),
+        "size": float(size),
+        "covers": float(covers),
     }
 
 
@@ -115,3 +144,34 @@ def _label(answer: Answer, truth: Truth) -> str:
     if answer.verdict == "class":
         return "class with it" if holds(answer, truth) else "class without it"
     return answer.verdict
+
+
+def answer_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return every answer as shares: a class gives each of its sets an equal part of the trial.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Opened trials.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``trial``, ``sort``, ``hidden``, ``answer``, ``share`` [-] and whether that answer is ``true``; the shares
+        of a trial add up to 1.
+    """
+    rows = [row for outcome in outcomes for row in _shares(outcome)]
+    return pd.DataFrame(rows, columns=["trial", "sort", "hidden", "answer", "share", "true"])
+
+
+def _shares(outcome: Outcome) -> list[list[Any]]:
+    truth, answer = outcome.truth, outcome.answer
+    start = [outcome.index, sort_of(truth), label(truth.effects)]
+    if answer is None:
+        return [[*start, "failed", 1.0, False]]
+    if answer.verdict in ("unknown", "none"):
+        return [[*start, answer.verdict, 1.0, is_right(answer, truth)]]
+    if not answer.sets:
+        return [[*start, "named nothing", 1.0, False]]
+    part = 1.0 / len(answer.sets)
+    return [[*start, label(s), part, accepted(s, truth)] for s in answer.sets]

@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
-import pandas as pd
-
-Line = Mapping[str, Any] | pd.Series
-"""A row of a table, or what says the same."""
+from modalkit.blind.scoring.table import Rate
 
 LEAST = 1e-4
 """What is smaller is written as 0."""
@@ -27,27 +22,21 @@ def part_text(value: float) -> str:
     return f"{percent(value)} %" if math.isfinite(value) else "-"
 
 
-def share_text(row: Line, prefix: str = "") -> str:
-    """Return ``85 % (80 to 89)`` of a row with ``rate``, ``low95`` and ``high95``; ``-`` where nothing was asked."""
-    rate, low, high = (float(row[prefix + key]) for key in ("rate", "low95", "high95"))
-    return f"{percent(rate)} % ({percent(low)} to {percent(high)})" if math.isfinite(rate) else "-"
+def share_text(row: Rate) -> str:
+    """Return a share with its interval, ``85 % (80 to 89)``; ``-`` where nothing was asked."""
+    if not math.isfinite(row.rate):
+        return "-"
+    return f"{percent(row.rate)} % ({percent(row.low)} to {percent(row.high)})"
 
 
-def count_text(row: Line, prefix: str = "") -> str:
+def count_text(row: Rate) -> str:
     """Return ``34 of 40``; a credit that is no whole number has a decimal."""
-    count = float(row[prefix + "count"])
-    return (
-        f"{count:.0f} of {int(row[prefix + 'total'])}"
-        if count.is_integer()
-        else f"{count:.1f} of {int(row[prefix + 'total'])}"
-    )
+    return f"{row.count:.{0 if float(row.count).is_integer() else 1}f} of {row.total}"
 
 
-def value_text(
-    row: Line, key: str = "value", prefix: str = "", *, scale: float = 1.0, digits: int = 3
-) -> str:
+def value_text(row: Rate, *, scale: float = 1.0, digits: int = 3) -> str:
     """Return a value with its interval, ``0.042 (0.031 to 0.055)``, with some significant digits."""
-    values = [scale * float(row[name]) for name in (key, f"{prefix}low95", f"{prefix}high95")]
+    values = [scale * value for value in (row.rate, row.low, row.high)]
     if not math.isfinite(values[0]):
         return "-"
     middle, low, high = (f"{v:.{digits}g}" if abs(v) >= LEAST else "0" for v in values)

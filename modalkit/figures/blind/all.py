@@ -6,9 +6,12 @@ from collections.abc import Callable
 
 from matplotlib.figure import Figure
 
+from modalkit.blind.scoring.abstention import KNOWN
+from modalkit.blind.scoring.calibration import CAME_TRUE
 from modalkit.blind.scoring.closing import comparable
+from modalkit.blind.scoring.rates import headline
 from modalkit.blind.scoring.score import Score
-from modalkit.figures.blind.confidence import abstention_figure, reliability_figure
+from modalkit.figures.blind.confidence import abstention_figure, curve_of, reliability_figure
 from modalkit.figures.blind.confusion import confusion_figure
 from modalkit.figures.blind.rates import rates_figure
 from modalkit.figures.blind.truth import closing_figure, severity_figure
@@ -28,21 +31,12 @@ def blind_figures(score: Score) -> dict[str, Figure]:
         ``blind_rates``, ``blind_confusion``, ``blind_abstention``, ``blind_reliability``, ``blind_severity`` and
         ``blind_closing``; those that the run has nothing for are left out.
     """
-    known, outside = score.abstention, score.abstention_outside
     stated = comparable(score.closing)
     drawn: dict[str, tuple[bool, Callable[[], Figure]]] = {
-        "blind_rates": (len(score.headline) > 0, lambda: rates_figure(score.headline, score.effects)),
+        "blind_rates": (bool(headline(score.rates)), lambda: rates_figure(score)),
         "blind_confusion": (True, lambda: confusion_figure(score.answers)),
-        "blind_abstention": (
-            len(known.curve) > 0,
-            lambda: abstention_figure((known.curve, known.rule), (outside.curve, outside.rule)),
-        ),
-        "blind_reliability": (
-            len(score.reliability) > 0,
-            lambda: reliability_figure(
-                score.reliability, score.calibration, score.open_set.roc, score.open_set.area
-            ),
-        ),
+        "blind_abstention": (len(curve_of(score, KNOWN).points) > 0, lambda: abstention_figure(score)),
+        "blind_reliability": (bool(score.rates.of(CAME_TRUE)), lambda: reliability_figure(score)),
         "blind_severity": (
             bool(score.severity["error"].notna().any()),
             lambda: severity_figure(score.severity),

@@ -1,7 +1,9 @@
-"""What the JSON documents hold: names, types, units, meaning; mypy holds what writes them to it.
+"""What the JSON documents hold: names, types, units, meaning, and where in a result each field is taken from.
 
 A class is an object of a document, an annotation a field: its type, then a sentence, which ends with the unit of its
-numbers in brackets and says when it may be null. The page `docs/reference/json.md` is made of these.
+numbers in brackets and says when it may be null, then :class:`modalkit.output.fields.Of` where the result calls it
+otherwise. :func:`modalkit.output.fields.fill` makes the object of a result; tests hold what comes of it to the types.
+The page `docs/reference/json.md` is made of these.
 """
 
 from modalkit.output.schemas.blind import BlindDocument

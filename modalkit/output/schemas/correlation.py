@@ -5,42 +5,46 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Literal, TypedDict
 
+from modalkit.output.fields import Of
+
 
 class CorrelatedPair(TypedDict):
     """One measured mode beside its partner."""
 
-    test_mode: Annotated[int, "number among the measured modes, from 1 [-]"]
-    model_mode: Annotated[int, "number among those of the model, from 1 [-]"]
-    test_hz: Annotated[float, "measured frequency [Hz]"]
-    model_hz: Annotated[float, "the model's [Hz]"]
-    error_percent: Annotated[float, "model minus test, over test [%]"]
-    sigma_percent: Annotated[float, "standard deviation of the measured frequency [%]"]
-    mac: Annotated[float | None, "MAC; null without shapes [-]"]
+    test_mode: Annotated[int, "number among the measured modes, from 1 [-]", Of("test mode")]
+    model_mode: Annotated[int, "number among those of the model, from 1 [-]", Of("model mode")]
+    test_hz: Annotated[float, "measured frequency [Hz]", Of("test [Hz]")]
+    model_hz: Annotated[float, "the model's [Hz]", Of("model [Hz]")]
+    error_percent: Annotated[float, "model minus test, over test [%]", Of("error [%]")]
+    sigma_percent: Annotated[float, "standard deviation of the measured frequency [%]", Of("sigma [%]")]
+    mac: Annotated[float | None, "MAC; null without shapes [-]", Of("MAC")]
 
 
 class NumberedMode(TypedDict):
     """A mode without a partner."""
 
     mode: Annotated[int, "number of the mode, from 1 [-]"]
-    frequency_hz: Annotated[float, "its frequency [Hz]"]
+    frequency_hz: Annotated[float, "its frequency [Hz]", Of("frequency [Hz]")]
 
 
 class FracEntry(TypedDict):
     """Agreement of one FRF."""
 
     response: Annotated[int, "node of the response [-]"]
-    response_direction: Annotated[str, "its direction, `+Z`; empty for a skew one"]
+    response_direction: Annotated[str, "its direction, `+Z`; empty for a skew one", Of("response direction")]
     force: Annotated[int | None, "node of the force; null where modes do not say it [-]"]
-    force_direction: Annotated[str | None, "its direction; null where modes do not say it"]
-    frac: Annotated[float | None, "FRAC; null if undefined [-]"]
+    force_direction: Annotated[
+        str | None, "its direction; null where modes do not say it", Of("force direction")
+    ]
+    frac: Annotated[float | None, "FRAC; null if undefined [-]", Of("FRAC")]
 
 
 class CorrelationDocument(TypedDict):
     """Written by `modalkit correlate STUDY --json`."""
 
     schema: Annotated[Literal["modalkit.correlation/1"], "kind and version of the document"]
-    frequency_rms_percent: Annotated[float, "r.m.s. frequency error over the pairs [%]"]
-    pairs: Annotated[Sequence[CorrelatedPair], "paired modes"]
+    frequency_rms_percent: Annotated[float, "r.m.s. frequency error over the pairs [%]", Of("rms_percent")]
+    pairs: Annotated[Sequence[CorrelatedPair], "paired modes", Of("table")]
     mac: Annotated[
         Sequence[Sequence[float | None]],
         "MAC, test modes down, model modes across; empty without shapes, null if undefined [-]",

@@ -5,25 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, TypedDict
 
+from modalkit.output.fields import Of
+
 
 class GapMode(TypedDict):
     """One measured mode beside its partner."""
 
     study: Annotated[str, "title of the study"]
-    test_hz: Annotated[float, "measured frequency [Hz]"]
-    model_hz: Annotated[float, "the nominal model's [Hz]"]
-    error_percent: Annotated[float, "model minus test, over test [%]"]
-    sigma_percent: Annotated[float, "standard deviation of the measured frequency [%]"]
-    mac: Annotated[float | None, "MAC; null without shapes [-]"]
-    test_damping: Annotated[float | None, "measured damping ratio; null where none is known [-]"]
-    model_damping: Annotated[float | None, "what the study expects; null where it states none [-]"]
+    test_hz: Annotated[float, "measured frequency [Hz]", Of("test [Hz]")]
+    model_hz: Annotated[float, "the nominal model's [Hz]", Of("model [Hz]")]
+    error_percent: Annotated[float, "model minus test, over test [%]", Of("error [%]")]
+    sigma_percent: Annotated[float, "standard deviation of the measured frequency [%]", Of("sigma [%]")]
+    mac: Annotated[float | None, "MAC; null without shapes [-]", Of("MAC")]
+    test_damping: Annotated[
+        float | None, "measured damping ratio; null where none is known [-]", Of("test damping")
+    ]
+    model_damping: Annotated[
+        float | None, "what the study expects; null where it states none [-]", Of("model damping")
+    ]
 
 
 class GapEntry(TypedDict):
     """The gap before anything is explained."""
 
-    frequency_rms_percent: Annotated[float, "r.m.s. frequency error over the pairs [%]"]
-    noise_floor_percent: Annotated[float, "what repeating the test alone would give [%]"]
+    frequency_rms_percent: Annotated[float, "r.m.s. frequency error over the pairs [%]", Of("rms_percent")]
+    noise_floor_percent: Annotated[float, "what repeating the test alone would give [%]", Of("floor_percent")]
     modes: Annotated[Sequence[GapMode], "mode by mode"]
     frac: Annotated[
         Sequence[float | None],
@@ -88,7 +94,9 @@ class RankedEntry(TypedDict):
         " a place that is an end or a test point stands in `where.location` alone",
     ]
     plausible: Annotated[bool, "whether the sizes are believable for such a specimen"]
-    fit_p_value: Annotated[float, "chance of a misfit like this or worse if the set is true [-]"]
+    fit_p_value: Annotated[
+        float, "chance of a misfit like this or worse if the set is true [-]", Of("p_value")
+    ]
 
 
 class CauseEntry(TypedDict):
@@ -112,24 +120,35 @@ class CauseEntry(TypedDict):
 class HeldPointsEntry(TypedDict):
     """Errors of modal constants at points held out."""
 
-    before_percent: Annotated[float | None, "of the nominal model; null if undefined [%]"]
-    after_percent: Annotated[float | None, "with the first row; null if undefined [%]"]
-    nuisance_only_percent: Annotated[float | None, "with the tolerances alone; null if undefined [%]"]
+    before_percent: Annotated[float | None, "of the nominal model; null if undefined [%]", Of("before")]
+    after_percent: Annotated[float | None, "with the first row; null if undefined [%]", Of("after")]
+    nuisance_only_percent: Annotated[
+        float | None, "with the tolerances alone; null if undefined [%]", Of("nuisance")
+    ]
 
 
 class HeldOut(TypedDict):
     """R.m.s. errors on modes left out in turn and predicted from the others."""
 
-    before_percent: Annotated[float | None, "of the nominal model; null with one mode only [%]"]
-    after_percent: Annotated[float | None, "with the first row of the ranking; null likewise [%]"]
-    runner_up_percent: Annotated[float | None, "with the row behind it; null where there is none [%]"]
-    nuisance_only_percent: Annotated[float | None, "with the tolerances alone; null with one mode only [%]"]
+    before_percent: Annotated[
+        float | None, "of the nominal model; null with one mode only [%]", Of("held_before")
+    ]
+    after_percent: Annotated[
+        float | None, "with the first row of the ranking; null likewise [%]", Of("held_after")
+    ]
+    runner_up_percent: Annotated[
+        float | None, "with the row behind it; null where there is none [%]", Of("held_runner_up")
+    ]
+    nuisance_only_percent: Annotated[
+        float | None, "with the tolerances alone; null with one mode only [%]", Of("held_nuisance")
+    ]
     noise_floor_percent: Annotated[
-        float | None, "what repeating the test alone would give; null if undefined [%]"
+        float | None, "what repeating the test alone would give; null if undefined [%]", Of("floor")
     ]
     nuisance_stretch_sigma: Annotated[
         float | None,
         "how far off a tolerance would have to be if tolerances alone were the cause; null if undefined [sigma]",
+        Of("stretch"),
     ]
     points: Annotated[
         HeldPointsEntry | None, "the same at points held out; null unless the gap shows in the FRFs"
@@ -151,11 +170,13 @@ class ShrinkEntry(TypedDict):
         Literal["frequency", "damping", "frf", "combined"],
         "what the errors are of: what carries the gap; of `combined` 100 % is one standard deviation",
     ]
-    before_percent: Annotated[float, "r.m.s. error of the nominal model [%]"]
-    after_percent: Annotated[float, "once the first row is fitted [%]"]
-    held_out: Annotated[HeldOut, "on modes left out"]
+    before_percent: Annotated[float, "r.m.s. error of the nominal model [%]", Of("before")]
+    after_percent: Annotated[float, "once the first row is fitted [%]", Of("after")]
+    held_out: Annotated[HeldOut, "on modes left out", Of("")]
     closed_percent: Annotated[
-        ClosedEntry | None, "share that closes; null where `before_percent` is within 1.5 times the floor"
+        ClosedEntry | None,
+        "share that closes; null where `before_percent` is within 1.5 times the floor",
+        Of("closed"),
     ]
 
 

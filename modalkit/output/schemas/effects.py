@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Literal, TypedDict
 
+from modalkit.output.fields import Of
+
 
 class PriorEntry(TypedDict):
     """One parameter with its prior."""
@@ -32,7 +34,7 @@ class EffectEntry(TypedDict):
     damping_doubt: Annotated[float, "doubt of ln damping that it leaves, 1 sigma [-]"]
     parameters: Annotated[Sequence[PriorEntry], "its parameters and their priors"]
     labels: Annotated[Sequence[str], "further values that are node numbers of the test"]
-    names: Annotated[Sequence[str], "further values that are names of your own model"]
+    names: Annotated[Sequence[str], "further values that are names of your own model", Of("named")]
     of_sensor: Annotated[bool, "whether `channel` may name one fixed sensor instead: `5+Z`"]
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Literal, TypedDict
 
+from modalkit.output.fields import Of
+
 
 class ShapeEntry(TypedDict):
     """One degree of freedom of a mode shape."""
@@ -57,8 +59,10 @@ class TrendEntry(TypedDict):
     """Change of the frequencies over a test that roves, about the modes listed, which are those in its middle."""
 
     rate: Annotated[float, "relative change from the first point to the last, in the order of the file [-]"]
-    sigma: Annotated[float, "its standard deviation [-]"]
-    points: Annotated[int, "number of points, or sets of FRFs, measured one after the other [-]"]
+    sigma: Annotated[float, "its standard deviation [-]", Of("rate_sigma")]
+    points: Annotated[
+        int, "number of points, or sets of FRFs, measured one after the other [-]", Of("setups")
+    ]
 
 
 class ModesDocument(TypedDict):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, NotRequired, TypedDict
 
+from modalkit.output.fields import Of
+
 
 class ForecastEntry(TypedDict):
     """One effect, as clear as it is asked about."""
@@ -15,8 +17,11 @@ class ForecastEntry(TypedDict):
     outcome: Annotated[
         Literal["named", "place", "edge", "class", "unseen"],
         "what a diagnosis is expected to say: named, its place in doubt, at the edge, in a class, not seen",
+        Of("kind"),
     ]
-    not_told_from: Annotated[Sequence[str], "rivals it is not separated from, or hardly, nearest first"]
+    not_told_from: Annotated[
+        Sequence[str], "rivals it is not separated from, or hardly, nearest first", Of("rivals")
+    ]
     seen_from: Annotated[str | None, "in words: from what size on it is seen; null for never"]
     separated_from: Annotated[str | None, "in words: separated from all others by 3 sigma; null for never"]
     sure_from: Annotated[str | None, "in words: by 5 sigma; null for never"]
@@ -25,7 +30,7 @@ class ForecastEntry(TypedDict):
     separated: Annotated[float | None, "size from which it is separated; null for never [SI]"]
     asked: Annotated[str | None, "in words: the size that is asked about; null for none"]
     nearest: Annotated[str, "the rival that can do most of what it does"]
-    nearest_sigma: Annotated[float | None, "distance to that one; null if undefined [sigma]"]
+    nearest_sigma: Annotated[float | None, "distance to that one; null if undefined [sigma]", Of("sigma")]
     sigma: Annotated[
         Mapping[str, float | None], "distance to each rival and to `none`; null from itself [sigma]"
     ]
@@ -46,7 +51,7 @@ class AdviceEntry(TypedDict):
     change: Annotated[str, "short name"]
     measure: Annotated[str, "what to do"]
     worth: Annotated[float, "what it is ranked by; 0 for nothing gained [-]"]
-    threshold_factor: Annotated[float, "how many times smaller sizes are then separated [-]"]
+    threshold_factor: Annotated[float, "how many times smaller sizes are then separated [-]", Of("factor")]
     separates: Annotated[Sequence[Sequence[str]], "pairs of effects that it newly separates"]
     then: Annotated[DesignEntry, "the forecast with the change"]
 

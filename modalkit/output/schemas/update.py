@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, TypedDict
 
+from modalkit.output.fields import Of
+
 
 class UpdatedParameter(TypedDict):
     """One updated parameter."""
@@ -103,9 +105,9 @@ class ByFrfs(TypedDict):
         "by FRF: nodes `response` and `force`; FRAC `before`, `after stage 1` and so on where there are several"
         " stages, and `after`; null if undefined [-]",
     ]
-    damping: Annotated[Sequence[DampingPair], "damping ratios, one row for each of `pairs`"]
-    iterations_by_stage: Annotated[Sequence[int], "iterations of each stage [-]"]
-    lines_hz: Annotated[Sequence[Sequence[float]], "frequencies compared, by stage [Hz]"]
+    damping: Annotated[Sequence[DampingPair], "damping ratios, one row for each of `pairs`", Of("pairs")]
+    iterations_by_stage: Annotated[Sequence[int], "iterations of each stage [-]", Of("stages")]
+    lines_hz: Annotated[Sequence[Sequence[float]], "frequencies compared, by stage [Hz]", Of("lines")]
     discrepancy: Annotated[Sequence[float], "what the model cannot follow, relative to the FRFs, r.m.s. [-]"]
 
 
@@ -129,7 +131,7 @@ class UpdateDocument(TypedDict):
     ]
     exact: Annotated[bool, "whether `after_hz` is of the full model and not of a reduced basis"]
     rms_percent: Annotated[RmsChange, "r.m.s. frequency error"]
-    statistics: Annotated[Statistics, "how the fit went"]
+    statistics: Annotated[Statistics, "how the fit went", Of("")]
     determinability: Annotated[
         DeterminabilityEntry | None, "what the data determine; null if it was not asked"
     ]

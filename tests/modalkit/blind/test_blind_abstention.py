@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import combinations
-
 import numpy as np
 import pytest
 from blind_outcomes import diagnosis, honest_run, run_of, truth
@@ -11,8 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modalkit.blind import score
-from modalkit.blind.scoring.abstention import area, curve
-from modalkit.blind.scoring.open_set import roc_area, roc_curve
+from modalkit.blind.scoring.abstention import BOTH, KNOWN, answered_from, area, curve, right_from
+from modalkit.blind.scoring.open_set import ANSWERS, AREA, HONEST, answer, roc_area, roc_curve
+from modalkit.blind.scoring.table import ALL
+from modalkit.figures.blind.confidence import curve_of
 
 TRIALS = st.lists(
     st.tuples(st.sampled_from([0.1, 0.3, 0.5, 0.9, 1.0]), st.booleans()), min_size=1, max_size=12
@@ -28,7 +28,7 @@ def test_every_threshold_counts_those_at_or_above_it(trials: list[tuple[float, b
         assert row["committed"] == over.sum()
         assert row["count"] == right[over].sum()
         assert row["answered"] == pytest.approx(over.mean())
-        assert row["low95"] <= row["right"] <= row["high95"]
+        assert row["low"] <= row["right"] <= row["high"]
     assert sorted(table["threshold"]) == sorted(set(confidence))
 
 
@@ -61,11 +61,13 @@ def test_unknown_and_failed_commit_to_nothing_at_any_probability() -> None:
             (truth("taper"), diagnosis("named", ("E",), shares=[0.98])),
         )
     )
-    known, outside = result.abstention, result.abstention_outside
-    assert known.curve[["committed", "count", "total"]].to_numpy().tolist() == [[1, 1, 3]]
-    assert outside.curve[["committed", "count", "total"]].to_numpy().tolist() == [[1, 0, 4], [2, 1, 4]]
-    assert (known.rule["count"], known.rule["total"], known.rule["of"]) == (1, 1, 3)
-    assert (outside.rule["count"], outside.rule["total"], outside.rule["of"]) == (1, 2, 4)
+    known, both = (curve_of(result, group) for group in (KNOWN, BOTH))
+    assert known.points[["committed", "count"]].to_numpy().tolist() == [[1, 1]]
+    assert both.points[["committed", "count"]].to_numpy().tolist() == [[1, 0], [2, 1]]
+    assert (known.right.count, known.right.total, known.answered.total) == (1, 1, 3)
+    assert (both.right.count, both.right.total, both.answered.total) == (1, 2, 4)
+    rows = [result.rates[question(0.95), BOTH] for question in (answered_from, right_from)]
+    assert [(row.count, row.total) for row in rows] == [(2, 4), (1, 2)]
 
 
 def test_no_effect_is_a_set_of_its_own() -> None:
@@ -87,14 +89,14 @@ def test_a_false_name_takes_no_part_in_the_merit_of_a_true_one() -> None:
     result = score(run_of((truth("uniform_damping"), both)))  # damping that a window cannot make
     assert result.trials["confidence"].tolist() == pytest.approx([0.97])
     assert result.trials["probability"].tolist() == pytest.approx([0.02])
-    assert not result.trials["first"].any() and not result.abstention.curve["right"].any()
+    assert not result.trials["first"].any() and not curve_of(result, KNOWN).points["right"].any()
 
 
 def test_waiting_longer_pays_where_probabilities_are_honest() -> None:
-    curve = score(honest_run(1200, 11)).abstention.curve
-    sure = curve[curve["threshold"] >= 0.95].iloc[-1]
-    assert sure["right"] > curve.iloc[-1]["right"] + 0.1
-    assert sure["answered"] < curve.iloc[-1]["answered"]
+    result = score(honest_run(1200, 11))
+    least = curve_of(result, KNOWN).points.iloc[-1]
+    assert result.rates[right_from(0.95), KNOWN].rate > least["right"] + 0.1
+    assert result.rates[answered_from(0.95), KNOWN].rate < least["answered"]
 
 
 def test_roc_area_is_the_share_of_pairs_in_order() -> None:
@@ -123,11 +125,15 @@ def test_unknowable_effects_are_counted_by_name() -> None:
             (truth("E"), diagnosis("named", ("E",), fit=0.9)),
         )
     )
-    table = result.open_set.effects.set_index("effect")
-    assert table.loc["all, outside", ["count", "total"]].tolist() == [1, 3]
-    assert table.loc["taper (outside)", ["unknown", "wrong name"]].tolist() == [1, 1]
-    assert table.loc["ground_spring (outside)", "wrong class"] == 1
-    assert table.loc["E (left out)", ["equivalent", "rate"]].tolist() == [1, 1.0]
-    assert result.open_set.area["value"] == 1.0
-    shares = [sum(row) for row in combinations(table.loc["taper (outside)", ["unknown", "wrong name"]], 2)]
-    assert shares == [table.loc["taper (outside)", "total"]]
+    found = result.rates
+    honest = found[HONEST, "all, outside"]
+    assert (honest.count, honest.total) == (1, 3)
+    of_taper = [found[answer(name), "taper (outside)"].count for name in ANSWERS]
+    assert dict(zip(ANSWERS, of_taper, strict=True)) == {
+        "unknown": 1, "equivalent": 0, "wrong name": 1, "wrong class": 0, "none": 0, "failed": 0
+    }  # fmt: skip
+    assert sum(of_taper) == found[HONEST, "taper (outside)"].total
+    assert found[answer("wrong class"), "ground_spring (outside)"].count == 1
+    assert found[answer("equivalent"), "E (left out)"].count == 1
+    assert found[HONEST, "E (left out)"].rate == 1.0
+    assert found[AREA, ALL].rate == 1.0

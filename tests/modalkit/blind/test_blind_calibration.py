@@ -10,8 +10,24 @@ from hypothesis import strategies as st
 
 from modalkit.blind import score
 from modalkit.blind.answer import read_answer
-from modalkit.blind.scoring.calibration import EDGES, bins, calibration_error, reliability_table
+from modalkit.blind.scoring.calibration import (
+    BELOW,
+    BIAS,
+    CAME_TRUE,
+    EDGES,
+    ERROR,
+    HOLDS,
+    OVER,
+    SIZES,
+    STATED,
+    UNIFORM,
+    bins,
+    calibration_error,
+    of_size,
+    reliability,
+)
 from modalkit.blind.scoring.posterior import posterior
+from modalkit.blind.scoring.table import ALL
 
 
 def test_brier_and_log_score_by_hand() -> None:
@@ -19,8 +35,8 @@ def test_brier_and_log_score_by_hand() -> None:
     stated = posterior(read_answer(message), truth("density"))
     assert stated.brier == pytest.approx(0.6**2 + 0.7**2 + 0.05**2 + 0.05**2)
     assert stated.truth == pytest.approx(0.3)
-    forecasts = score(run_of((truth("density"), message))).forecasts
-    assert forecasts["log"].tolist() == pytest.approx([-np.log(0.3)])
+    trials = score(run_of((truth("density"), message))).trials
+    assert trials["log"].tolist() == pytest.approx([-np.log(0.3)])
 
 
 def test_smallest_set_that_holds_95_percent() -> None:
@@ -34,10 +50,10 @@ def test_smallest_set_that_holds_95_percent() -> None:
 
 
 def test_a_truth_that_was_not_compared_has_no_probability() -> None:
-    result = score(run_of((truth("E"), diagnosis("named", ("density",), shares=[1.0]))))
-    assert result.forecasts["brier"].tolist() == pytest.approx([2.0])
-    assert result.forecasts["log"].tolist() == pytest.approx([-np.log(1e-6)])
-    assert not result.forecasts["covers"].any()
+    trials = score(run_of((truth("E"), diagnosis("named", ("density",), shares=[1.0])))).trials
+    assert trials["brier"].tolist() == pytest.approx([2.0])
+    assert trials["log"].tolist() == pytest.approx([-np.log(1e-6)])
+    assert not trials["covers"].any()
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=50))
@@ -45,9 +61,13 @@ def test_every_probability_has_one_bin(stated: list[float]) -> None:
     place = bins(np.array(stated))
     for value, i in zip(stated, place, strict=True):
         assert EDGES[i] <= value <= EDGES[i + 1]
-    table = reliability_table(np.array(stated), np.ones(len(stated)))
-    assert table["total"].sum() == len(stated)
-    assert ((table["stated"] >= table["low"] - 1e-12) & (table["stated"] <= table["high"] + 1e-12)).all()
+    rows = list(reliability(np.array(stated), np.ones(len(stated))))
+    true, mean = ([row for row in rows if row.question == question] for question in (CAME_TRUE, STATED))
+    assert sum(row.total for row in true) == len(stated)
+    assert [row.group for row in true] == [row.group for row in mean]
+    edges = [(EDGES[i], EDGES[i + 1]) for i in sorted(set(place))]
+    for (low, high), row in zip(edges, mean, strict=True):
+        assert low - 1e-12 <= row.rate <= high + 1e-12
 
 
 def test_expected_calibration_error_by_hand() -> None:
@@ -57,33 +77,31 @@ def test_expected_calibration_error_by_hand() -> None:
 
 
 def test_honest_probabilities_pass_and_cover() -> None:
-    result = score(honest_run(2000, 21))
-    table = result.calibration.set_index(["trials", "measure"])
-    bias = table.loc[("effects and none, faint ones too", "stated minus right")]
-    visible = table.loc[("visible effects", "stated minus right")]
-    assert visible["low95"] < 0.02 and visible["high95"] > -0.02
-    assert table.loc[("visible effects", "expected calibration error"), "value"] < 0.05
-    cover = result.cover.iloc[0]
-    assert cover["low95"] < 0.985 and cover["rate"] > 0.94
-    assert cover["total"] == sum(cover[name] for name in result.cover.columns if name.startswith("size "))
-    assert bias["total"] > visible["total"]
+    found = score(honest_run(2000, 21)).rates
+    bias = found[BIAS, "effects and none, faint ones too"]
+    visible = found[BIAS, "visible effects"]
+    assert visible.low < 0.02 and visible.high > -0.02
+    assert found[ERROR, "visible effects"].rate < 0.05
+    cover = found.of(HOLDS)[0]
+    assert cover.low < 0.985 and cover.rate > 0.94
+    sizes = [*(of_size(n) for n in SIZES), OVER]
+    assert cover.total == sum(found[size, cover.group].count for size in sizes)
+    assert bias.total > visible.total
 
 
 def test_overconfident_probabilities_are_found_out() -> None:
     wrong = [(truth("E"), diagnosis("named", ("density",), others=[("E",)], shares=[0.98, 0.02]))] * 6
     right = [(truth("E"), diagnosis("named", ("E",), others=[("density",)], shares=[0.98, 0.02]))] * 6
-    table = score(run_of(*wrong, *right)).calibration.set_index(["trials", "measure"])
-    found = table.loc[("visible effects", "expected calibration error")]
-    assert found["value"] == pytest.approx(0.48)
-    assert found["low95"] > 0.1
+    found = score(run_of(*wrong, *right)).rates[ERROR, "visible effects"]
+    assert found.rate == pytest.approx(0.48)
+    assert found.low > 0.1
 
 
 def test_p_value_where_nothing_is_hidden() -> None:
     values = (np.arange(40) + 0.5) / 40
-    even = score(run_of(*((truth(), diagnosis("none", p_value=p)) for p in values))).uniformity
-    assert even.set_index("level")["rate"].to_dict() == pytest.approx(
-        {0.005: 0.0, 0.05: 0.05, 0.25: 0.25, 0.5: 0.5, 0.75: 0.75, 0.95: 0.95}
-    )
-    assert even["ks_p"].iloc[0] > 0.99
-    small = score(run_of(*((truth(), diagnosis("none", p_value=p**4)) for p in values))).uniformity
-    assert small["ks_p"].iloc[0] < 1e-3
+    even = score(run_of(*((truth(), diagnosis("none", p_value=p)) for p in values))).rates
+    assert [row.rate for row in even.of(BELOW)] == pytest.approx([0.0, 0.05, 0.25, 0.5, 0.75, 0.95])
+    assert [row.group for row in even.of(BELOW)] == ["0.005", "0.05", "0.25", "0.5", "0.75", "0.95"]
+    assert even[UNIFORM, ALL].rate > 0.99
+    small = score(run_of(*((truth(), diagnosis("none", p_value=p**4)) for p in values))).rates
+    assert small[UNIFORM, ALL].rate < 1e-3

@@ -171,7 +171,7 @@ def test_the_score_does_not_need_the_documents() -> None:
     whole, lean = (run_blind(2, 5, plan=FAST, diagnose=always_none, documents=d) for d in (True, False))
     assert whole.outcomes[0].document is not None
     assert lean.outcomes[0].document is None
-    assert score(whole).rates.equals(score(lean).rates)
+    assert score(whole).rates.frame().equals(score(lean).rates.frame())
 
 
 def test_an_error_of_the_one_who_listens_ends_the_run() -> None:

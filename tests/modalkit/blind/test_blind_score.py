@@ -18,10 +18,14 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, DrawRanges, Truth, score
 from modalkit.blind.answer import read_answer
+from modalkit.blind.scoring.closing import BEYOND, INSIDE, MET, MISSED
 from modalkit.blind.scoring.intervals import RESAMPLES, bootstrap, wilson
 from modalkit.blind.scoring.judge import commits, credit, holds, is_right, top_is_right
 from modalkit.blind.scoring.markdown import BEGIN, END, into_page, score_markdown
+from modalkit.blind.scoring.places import CHANNEL
+from modalkit.blind.scoring.rates import SETS, TOP, TRUE_OF_SHOWN, headline, questions
 from modalkit.blind.scoring.score import score_again
+from modalkit.blind.scoring.table import ALL
 from modalkit.blind.shrunk import Shrinkage
 from modalkit.cli.scores import show_score, write_markdown
 from modalkit.output.schemas import BlindDocument
@@ -103,7 +107,7 @@ def by_hand() -> BlindResult:
 
 def test_rates_are_counted_as_by_hand() -> None:
     result = score(by_hand())
-    counts = {q: (float(r["count"]), int(r["total"])) for q, r in result.rates.iterrows()}
+    counts = {q: (result.rates[q, ALL].count, result.rates[q, ALL].total) for q in questions(result.trials)}
     outside, left = "effect outside the library", "effect left out of the library"
     assert counts == {
         "most probable answer is the truth": (4, 9),
@@ -134,29 +138,34 @@ def test_rates_are_counted_as_by_hand() -> None:
         f"{left}: wrong class": (1, 1),
         f"{left}: called none": (0, 1),
     }
-    inside = result.headline.loc["parameter inside its 95 % interval"]
-    assert (inside["count"], inside["total"]) == (1, 2)
+    inside = headline(result.rates)["parameter inside its 95 % interval"]
+    assert (inside.count, inside.total) == (1, 2)
 
 
 def test_confusion_shares_a_class_among_its_sets() -> None:
     result = score(by_hand())
-    assert result.confusion.loc["E"].to_dict()["density"] == 1.0  # half of two classes, one of them left out
-    assert result.confusion.loc["length", "failed"] == 1.0
-    assert result.confusion.loc["E + length", "E + length"] == 1.0
-    assert result.confusion.loc["none", "none"] == 1.0
-    assert result.confusion.to_numpy().sum() == pytest.approx(13)
+    confusion = result.to_json()["confusion"]
+    assert confusion["E"]["density"] == 1.0  # half of two classes, one of them left out
+    assert confusion["length"]["failed"] == 1.0
+    assert confusion["E + length"]["E + length"] == 1.0
+    assert confusion["none"]["none"] == 1.0
+    assert sum(sum(row.values()) for row in confusion.values()) == pytest.approx(13)
     true = result.answers[result.answers["true"].astype(bool)]
     assert true["share"].sum() == pytest.approx(5.5)
 
 
 def test_effects_are_counted_by_what_became_of_them() -> None:
-    table = score(by_hand()).effects.set_index(["sort", "effect"])
-    e = table.loc[("effect", "E")]
-    assert (e["trials"], e["named right"], e["class with it"], e["wrong"]) == (3, 2, 1, 0)
-    assert e["mean class size"] == pytest.approx(4 / 3)
-    faint = table.loc[("effect", "density")]
-    assert (faint["trials"], faint["visible"], faint["none"], faint["rate"]) == (2, 1, 1, 0.0)
-    assert table["trials"].sum() == 13
+    found = score(by_hand()).rates
+
+    def counts(effect: str, *names: str) -> list[float]:
+        return [found[f"effect: {name}", effect].count for name in names]
+
+    assert counts("E", "named right", "class with it", "wrong") == [2, 1, 0]
+    assert counts("E (left out)", "named right", "class with it", "wrong") == [0, 0, 1]
+    assert found[SETS, "E"].rate == pytest.approx(4 / 3)
+    assert counts("density", "visible", "none") == [1, 1]
+    assert (found[TRUE_OF_SHOWN, "density"].rate, found[TRUE_OF_SHOWN, "density"].total) == (0.0, 1)
+    assert sum(row.total for row in found.of("effect: visible")) == 13
 
 
 def test_groups_split_what_is_asked() -> None:
@@ -167,11 +176,12 @@ def test_groups_split_what_is_asked() -> None:
             (truth("E", level="strong"), diagnosis("named", ("E",))),
             (truth("E", level="mild", visibility=1.0), diagnosis("none")),
         )
-    ).groups.set_index(["group", "value"])
-    assert result.loc[("level", "mild"), ["total", "top"]].tolist() == [2, 0.5]
-    assert result.loc[("level", "strong"), ["total", "top"]].tolist() == [1, 1.0]
-    assert result.loc[("kind", "plate"), "total"] == 1
-    assert result.loc[("baseline", "True"), "top"] == 1.0
+    ).rates
+    mild, strong = result[TOP, "level: mild"], result[TOP, "level: strong"]
+    assert (mild.total, mild.rate) == (2, 0.5)
+    assert (strong.total, strong.rate) == (1, 1.0)
+    assert result[TOP, "kind: plate"].total == 1
+    assert result[TOP, "baseline: yes"].rate == 1.0
 
 
 def test_places_take_the_nearest_of_mirrored_ones_and_the_first() -> None:
@@ -222,8 +232,8 @@ def test_channel_may_be_that_of_an_equivalent() -> None:
     message = [
         diagnosis("named", ("uniform_damping",), channel=c) for c in ("damping", "measurement", "mass")
     ]
-    table = score(run_of(*((truth("exponential_window"), s) for s in message))).channels
-    assert table.set_index("channel").loc["all", ["count", "total"]].tolist() == [2, 3]
+    row = score(run_of(*((truth("exponential_window"), s) for s in message))).rates[CHANNEL, ALL]
+    assert (row.count, row.total) == (2, 3)
 
 
 def test_shrinkage_is_compared_where_both_speak_of_the_same() -> None:
@@ -237,11 +247,10 @@ def test_shrinkage_is_compared_where_both_speak_of_the_same() -> None:
         outcome(3, truth("E"), message),
     )
     result = score(BlindResult(7, DrawRanges(), trials))
-    row = result.closing_summary.set_index("trials").loc["all"]
-    assert row["mean_difference"] == pytest.approx((1 + 20) / 2)
-    assert (row["count"], row["total"]) == (1, 2)
-    assert (row["covered_count"], row["covered_total"]) == (1, 2)
-    assert row["beyond"] == pytest.approx(75)
+    assert result.rates[MISSED, ALL].rate == pytest.approx((1 + 20) / 2)
+    for question in (MET, INSIDE):
+        assert (result.rates[question, ALL].count, result.rates[question, ALL].total) == (1, 2)
+    assert result.rates[BEYOND, ALL].rate == pytest.approx(75)
     assert result.closing["held_out"].iloc[0] == pytest.approx(100 * (1 - (0.25 - 0.01) / (25 - 0.01)))
 
 
@@ -249,12 +258,13 @@ def test_json_is_strict_whole_and_can_be_scored_again() -> None:
     first = score(honest_run(60, 3)).to_json()
     text = json.dumps(first, allow_nan=False)
     back = json.loads(text)
-    assert back["schema"] == "modalkit.blind/1"
+    assert back["schema"] == "modalkit.blind/2"
     assert not departures(back, BlindDocument)
     again = json.loads(json.dumps(score_again(back).to_json(), allow_nan=False))
     assert again == back
+    assert json.loads(json.dumps(score_again(back | {"schema": "modalkit.blind/1"}).to_json())) == back
     assert len({row["salt"] for row in back["outcomes"]}) == 60
-    with pytest.raises(InputError, match=r"modalkit\.blind/1"):
+    with pytest.raises(InputError, match=r"modalkit\.blind/2"):
         score_again({"schema": "modalkit.modes/1"})
 
 
@@ -326,13 +336,14 @@ def test_counts_do_not_depend_on_the_order_of_the_trials(seed: int) -> None:
     run = honest_run(80, seed)
     back = BlindResult(run.seed, run.plan, run.outcomes[::-1])
     one, other = score(run), score(back)
-    pd.testing.assert_frame_equal(one.rates, other.rates)
-    pd.testing.assert_frame_equal(one.confusion, other.confusion)
-    pd.testing.assert_frame_equal(one.abstention.curve, other.abstention.curve)
-    pd.testing.assert_frame_equal(one.cover[["count", "total"]], other.cover[["count", "total"]])
-    assert one.confusion.sum(axis=1).tolist() == pytest.approx(
-        one.trials["effect"].value_counts().reindex(one.confusion.index).tolist()
-    )
+    tables = (table.frame().sort_values(["question", "group"]) for table in (one.rates, other.rates))
+    shares = [table[table["count"].notna()].reset_index(drop=True) for table in tables]
+    pd.testing.assert_frame_equal(*shares)
+    confusion, again = (found.to_json()["confusion"] for found in (one, other))
+    for name, row in confusion.items():
+        assert row == pytest.approx(again[name])
+    trials = one.trials["effect"].value_counts().to_dict()
+    assert {name: sum(row.values()) for name, row in confusion.items()} == pytest.approx(trials)
 
 
 def test_better_answers_never_score_less() -> None:
@@ -345,7 +356,7 @@ def test_better_answers_never_score_less() -> None:
         "a class counted by its share",
         "right when it commits",
     ):
-        assert after.rates.loc[question, "rate"] > before.rates.loc[question, "rate"]
+        assert after.rates[question, ALL].rate > before.rates[question, ALL].rate
 
 
 def test_several_hidden_places_are_compared_with_as_many() -> None:
@@ -372,8 +383,7 @@ def test_bootstrap_interval_of_a_mean_is_scipys_of_the_same_draws() -> None:
     theirs = scipy_bootstrap(
         (values,), np.mean, n_resamples=RESAMPLES, method="percentile", random_state=np.random.default_rng(5)
     ).confidence_interval
-    assert found["value"] == pytest.approx(values.mean())
-    assert (found["low95"], found["high95"]) == pytest.approx((theirs.low, theirs.high))
+    assert found == pytest.approx((values.mean(), theirs.low, theirs.high))
 
 
 def test_bootstrap_leaves_out_samples_in_which_the_statistic_is_not_defined() -> None:
@@ -381,6 +391,6 @@ def test_bootstrap_leaves_out_samples_in_which_the_statistic_is_not_defined() ->
         return np.where(values.any(axis=1), 2.0, np.nan)
 
     found = bootstrap(np.array([0.0, 1.0]), np.random.default_rng(5), statistic=of_any)
-    assert (found["low95"], found["high95"]) == (2.0, 2.0)
+    assert found[1:] == (2.0, 2.0)
     alone = bootstrap(np.array([7.0]), np.random.default_rng(5))
-    assert (alone["low95"], alone["high95"]) == (7.0, 7.0)
+    assert alone == (7.0, 7.0, 7.0)

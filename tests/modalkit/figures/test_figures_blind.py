@@ -10,7 +10,10 @@ from figure_text import assert_legible, panels, words
 
 from acquisition import InputError
 from modalkit.blind import score
+from modalkit.blind.scoring.abstention import KNOWN
+from modalkit.blind.scoring.calibration import CAME_TRUE, STATED
 from modalkit.figures import blind_figures
+from modalkit.figures.blind.confidence import curve_of
 from modalkit.figures.blind.confusion import confusion_figure, gathered
 
 
@@ -55,12 +58,13 @@ def test_blind_confusion_shares_classes_and_gathers_pairs() -> None:
 def test_blind_curves_show_what_they_are_given() -> None:
     result = score(honest_run(300, 8))
     figures = blind_figures(result)
-    rule = result.abstention.rule
-    assert f"{rule['count']} of {rule['total']} right" in words(figures["blind_abstention"])
+    known = curve_of(result, KNOWN)
+    assert f"{known.right.count} of {known.right.total} right" in words(figures["blind_abstention"])
     curve = panels(figures["blind_abstention"])["abstention"].get_lines()[0]
-    np.testing.assert_allclose(curve.get_ydata(), 100 * result.abstention.curve["right"])
+    np.testing.assert_allclose(curve.get_ydata(), 100 * known.points["right"])
     dots = panels(figures["blind_reliability"])["reliability"].collections[-1].get_offsets()
-    np.testing.assert_allclose(dots, 100 * result.reliability[["stated", "rate"]].to_numpy())
+    across, up = ([100 * row.rate for row in result.rates.of(q)] for q in (STATED, CAME_TRUE))
+    np.testing.assert_allclose(dots, np.column_stack([across, up]))
     covered = result.severity["covered"].astype(bool)
     assert f"{covered.sum()} of {len(covered)} parameters" in words(figures["blind_severity"])
 
