@@ -87,8 +87,11 @@ def fit_shaped(
 
 
 def _may_have_a_shape(frfs: FrfSet, start: ComplexArray) -> bool:
-    """Tell whether FRFs may have a line shape: none is excluded, and peaks are not far wider than lines."""
-    known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None
+    """Tell whether FRFs may have a line shape: none is excluded, and peaks are not far wider than lines.
+
+    Records under an exponential window, as those of hits, had no Hann window.
+    """
+    known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None or frfs.decay > 0
     return not known and bool(np.any(-start.real < BROAD * frfs.df))
 
 
