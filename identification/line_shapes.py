@@ -123,10 +123,8 @@ def worth_asking(fitted: Fitted) -> list[Kind]:
         change = _without(directions, (shaped - plain) * weight) / weight
         along = float(np.sum((change.conj() * fitted.residual).real / fitted.variance))
         power = float(np.sum(squared(change) / fitted.variance)) + np.finfo(float).tiny
-        if 2.0 * along**2 / power > STRONG:
-            return list(
-                KINDS
-            )  # the fit leaves more than noise, and what it would leave with a shape is not known
+        if 2.0 * along**2 / power > STRONG:  # more than noise is left: of what, no test about this fit tells
+            return list(KINDS)
         if 2.0 * (power - 2.0 * along) < STRONG:
             kinds.append(kind)
     return kinds

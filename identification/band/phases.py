@@ -28,9 +28,17 @@ NOISE = 0.2
 White noise has 0.39, smoothed noise 0.32; FRFs have less than 0.1, with peaks a tenth of a line wide each 100 lines
 0.14. Doubled: no noise is found; halved: modes far narrower than a line pass for noise."""
 
+SHOWN = 0.15
+"""The same of one FRF, above which it shows no mode [-]. Smoothed noise, whose share scatters most, has less in one FRF
+of ten thousand. Doubled: noise alone shows modes; halved: modes that few FRFs show pass for noise."""
+
+SEEN = 0.1
+"""Part of the FRFs, and one at least, in which a mode shows: others are at its nodes, or on parts that rest [-].
+Doubled: modes of a tenth of a structure pass for noise."""
+
 
 def noise_lines(values: ComplexArray) -> BoolArray:
-    """Tell which lines hold noise alone, in all FRFs, (n_lines,).
+    """Tell which lines hold noise alone, in all FRFs but less than a tenth of them, (n_lines,).
 
     Parameters
     ----------
@@ -43,17 +51,18 @@ def noise_lines(values: ComplexArray) -> BoolArray:
     if len(starts) < 2:
         return noise
     share = np.array([_poorer_side(values[:, a : a + STRETCH]) for a in starts])
-    share = uniform_filter1d(share, STRETCH // STEP, mode="nearest")
-    for a in starts[share > NOISE]:
+    share = uniform_filter1d(share, STRETCH // STEP, axis=0, mode="nearest")
+    least = np.quantile(share, SEEN, axis=1, method="lower")
+    for a in starts[(share.mean(axis=1) > NOISE) & (least > SHOWN)]:
         noise[a : a + STRETCH] = True
     noise[: starts[0]] = noise[starts[0]]
     return noise
 
 
-def _poorer_side(values: ComplexArray) -> float:
-    """Return the part of the power of phases on the side of lag zero that has less, the mean over the FRFs [-]."""
+def _poorer_side(values: ComplexArray) -> FloatArray:
+    """Return the part of the power of phases on the side of lag zero that has less, (n_frf,); half for zeros [-]."""
     size = np.maximum(np.abs(values), np.finfo(float).tiny)
     power: FloatArray = squared(np.fft.ifft(values / size * hann(STRETCH, sym=False), axis=1))
     sides = (power[:, NEAR : STRETCH // 2], power[:, STRETCH // 2 + 1 : 1 - NEAR])
-    poorer = np.minimum(sides[0].sum(axis=1), sides[1].sum(axis=1))
-    return float(np.mean(poorer / np.maximum(power.sum(axis=1), np.finfo(float).tiny)))
+    poorer, whole = np.minimum(sides[0].sum(axis=1), sides[1].sum(axis=1)), power.sum(axis=1)
+    return np.where(whole > 0, poorer / np.maximum(whole, np.finfo(float).tiny), 0.5)

@@ -54,5 +54,20 @@ def test_no_peak_passes_for_noise(width: float, spacing: float) -> None:
     assert not noise_lines(values.conj()).any()
 
 
+@pytest.mark.parametrize("mute", range(1, 6))
+def test_a_mode_that_few_frfs_show_is_none_of_the_noise_in_the_others(mute: int) -> None:
+    values = response(3.0, 60.0)
+    values[:mute, 900:] = noise(0, mute)[:, 900:]
+    assert not noise_lines(values).any()
+
+
+def test_an_frf_of_zeros_shows_nothing() -> None:
+    values = response(3.0, 90.0)
+    values[:, 900:] = noise(0, 6)[:, 900:]
+    values[:3] = 0.0
+    found = noise_lines(values)
+    assert not found[: 900 - STRETCH].any() and found[900:].all()
+
+
 def test_few_lines_are_not_judged() -> None:
     assert not noise_lines(noise(0, 6)[:, : STRETCH + 4]).any()
