@@ -108,7 +108,7 @@ def _lost(frfs: FrfSet, tests: Sequence[Judged], inside: BoolArray) -> tuple[Boo
         return _lost_at_the_end(coherent >= LOST, inside), "the coherence is lost", advice
     good = np.zeros(len(inside), dtype=np.bool_)
     good[inside] = ~noise_lines(frfs.values[:, inside])
-    why = "the phases of all FRFs are those of noise"
+    why = "the phases of nearly all FRFs are those of noise"
     return _lost_at_the_end(good, inside), why, "let the force reach further"
 
 

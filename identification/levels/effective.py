@@ -15,6 +15,7 @@ import numpy as np
 from scipy import stats
 
 from acquisition.arrays import FloatArray, IntArray
+from identification.fit.noise.disagreement import student_widening
 
 ROUNDS = 3
 """Fits of the curve, each with the error of the records that the one before left [-]. More change a level by less than
@@ -86,8 +87,7 @@ def effective_levels(
     left = recorded - curve @ fit
     part = of_records * weight
     error = max(float(np.sum(weight * left**2)) / freedom, 1.0)
-    wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)
-    sigma = wider * np.sqrt(error * np.linalg.inv(normal)[0, 0]) / fit[0]
+    sigma = np.sqrt(student_widening(freedom) * error * np.linalg.inv(normal)[0, 0]) / fit[0]
     return EffectiveLevels(levels - part * left, float(sigma * np.median(part)))
 
 

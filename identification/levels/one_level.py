@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 import scipy.fft
-from scipy import stats
 
 from acquisition import HammerTest, Windows
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
@@ -21,6 +20,7 @@ from acquisition.hits.hammer import Hits
 from identification.fit.equations import basis
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.residues import Residues, fit_residues, synthesise
+from identification.fit.noise.disagreement import student_widening
 from identification.level_dependence import LevelDependence
 from identification.levels.hits import Judged, UsedHits, used_hits
 from identification.levels.slopes import (
@@ -150,9 +150,8 @@ def hits_damping(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     damping = np.sum(weight * shifts, axis=0) / weight.sum(axis=0)
     pull = member.T @ (weight / weight.sum(axis=0) * (shifts - damping))
     counted = 1 / np.sum(share**2, axis=0)
-    wider = stats.t.ppf(0.975, np.maximum(counted - 1, 1.0)) / stats.norm.ppf(0.975)
-    least = np.finfo(float).eps
-    return damping, wider * np.sqrt(np.sum((pull / np.maximum(1 - share, least)) ** 2, axis=0))
+    scatter = np.sum((pull / np.maximum(1 - share, np.finfo(float).eps)) ** 2, axis=0)
+    return damping, np.sqrt(student_widening(counted - 1) * scatter)
 
 
 def _damping_by_level(found: LevelDependence) -> FloatArray:

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from acquisition import Windows
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from identification.fit.noise.disagreement import student_widening
 from identification.level_dependence import LevelDependence
 from identification.levels.hits import Judged, used_hits, why_not
 from identification.levels.one_level import hit_poles, hit_residues, hit_shifts
@@ -111,8 +111,8 @@ def _fitted(points: Sequence[_Point]) -> Growth:
     squares = np.sum([np.sum(point.scores(power) ** 2, axis=0) for point in points], axis=0)
     hits = sum(len(point.weight) for point in points)
     freedom = max(hits - len(points) - 1, 1)
-    wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)
-    return Growth(power, wider * np.sqrt(squares * hits / freedom) / information)
+    variance = student_widening(freedom) * squares * hits / freedom
+    return Growth(power, np.sqrt(variance) / information)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy import stats
 
 from acquisition import Windows
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
@@ -24,6 +23,7 @@ from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.projection import Step
 from identification.fit.equations.refine import evaluate, fit_at
 from identification.fit.equations.residues import uniform_weights
+from identification.fit.noise.disagreement import student_widening
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights
 from identification.level_dependence import LevelDependence
 from identification.levels.effective import effective_levels
@@ -277,5 +277,4 @@ def _slopes(
     held = np.sum(weight * bent**2, axis=0) / scale + 1 / np.maximum(np.abs(BENT * line / 2), least) ** 2
     information = power / scale - shared**2 / held
     pull = line * power / scale - shared / held * np.sum(weight * bent * about, axis=0) / scale
-    wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)
-    return pull / information, wider / np.sqrt(information)
+    return pull / information, np.sqrt(student_widening(freedom) / information)

@@ -106,7 +106,7 @@ def _examined(
 
     grown = growth(state.model, tests, state.found, windows=windows)
     assert grown is not None
-    dropped = np.zeros_like(grown.products) if grown.products.all() else grown.products
+    dropped = _of_others(grown)
     products = _products(state, dropped, grown)
     state = state.without(dropped)
     statement: tuple[str, ...] = ()
@@ -142,12 +142,17 @@ def _further(
         assert followed is not None
         grown = followed.surer(still)
         apart = np.abs(even.model.modal.frequency[:, None] - known.model.modal.frequency)
-        which = grown.products & (apart > reach).all(axis=1)
+        which = _of_others(grown) & (apart > reach).all(axis=1)
         names = (*names, *_products(even, which, grown).names)
         rest = even.without(which)
         if not _newcomers(rest, even, _reach(even, ~which)):
             return rest, names
         even = rest
+
+
+def _of_others(grown: Growth) -> BoolArray:
+    """Return which modes are products of others, (n_modes,): none where the constants of all grow."""
+    return np.asarray(grown.products & ~grown.products.all())
 
 
 def _newcomers(now: Examined, before: Examined, reach: FloatArray) -> bool:

@@ -70,12 +70,12 @@ def between_frfs(gradient: FloatArray, normal: FloatArray, expected: FloatArray)
     return Disagreement(mean, np.tile(each, (n_frf, 1, 1, 1)), each)
 
 
-def student_widening(freedom: FloatArray) -> FloatArray:
+def student_widening(freedom: FloatArray | float) -> FloatArray:
     """Return by what factor a variance is raised so that 1.96 standard deviations are a 95 % interval of Student's [-].
 
     Parameters
     ----------
-    freedom : array
+    freedom : array or float
         Degrees of freedom of the variance; under 1 counts as 1 [-].
     """
     ratio = stats.t.ppf(0.975, np.maximum(freedom, 1.0)) / stats.norm.ppf(0.975)

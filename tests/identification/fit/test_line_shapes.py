@@ -221,6 +221,18 @@ def test_what_leaves_noise_alone_asks_for_no_second_fit_and_what_was_windowed_do
         assert kind in worth_asking(fit_candidates(windowed, poles, band=(40.0, 160.0)))
 
 
+@pytest.mark.parametrize(
+    ("damping", "df", "blocks", "seed"),
+    [(0.003232, 0.8, 20, 170), (0.0184, 1.6, 3, 374), (0.0161, 1.6, 3, 659)],
+)
+def test_averages_over_few_blocks_keep_their_line_shape(damping, df, blocks, seed):
+    """Poles imitate the peaks without the shape, and leave nothing of it, or errors of averages hide it."""
+    frfs = welch(*structure(damping, seed), df=df, rate=400.0, blocks=blocks, seed=seed)
+    model = identify(frfs.select([0, 1, 2] if seed == 659 else [0, 1]))
+    assert model.frfs.line_shape is not None
+    check(model, damping, off=0.35)
+
+
 def test_frfs_of_noise_alone_do_not_deny_a_window():
     """At nodes, or across the plane of the test: noise rings at all lags, and says nothing of the window."""
     frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=3)
