@@ -160,8 +160,8 @@ def not_at_rest(fit: Fit, poles: ComplexArray) -> str:
     worst = int(np.argmax(np.abs(move[own])))
     place = float(np.abs(poles[worst])) / (2 * np.pi)
     return (
-        "the refinement of the poles did not come to rest: frequencies and damping may still change, by the next step "
-        f"at most {abs(move[own[worst]]):.2g} Hz, at {hertz(place)}, and standard deviations, which are those of a fit "
-        "at rest, may be too small. Most often it has more poles than the data bear out: narrow the band, lower the "
-        "order, or drop what is no mode, and use the numbers that stay within their standard deviations"
+        "the refinement of the poles did not come to rest: frequencies and damping may still change, frequencies by "
+        f"the next step at most {abs(move[own[worst]]):.2g} Hz, at {hertz(place)}, and standard deviations, which are "
+        "those of a fit at rest, may be too small. Most often it has more poles than the data bear out: narrow the "
+        "band, lower the order, or drop what is no mode, and use the numbers that stay within their standard deviations"
     )

@@ -23,7 +23,7 @@ from modalkit.blind.scoring.severity import point_table, severity, severity_tabl
 from modalkit.blind.scoring.table import Rate, Rates
 from modalkit.blind.scoring.trials import answer_table, trial_table
 
-SCHEMA = "modalkit.blind/2"
+SCHEMA, EARLIER = "modalkit.blind/2", "modalkit.blind/1"
 """Of version 1 there are files, too: they hold the same trials, which is all that is read of them."""
 
 
@@ -148,8 +148,10 @@ def score_again(document: dict[str, Any]) -> Score:
         If it is not the score of a blind run.
     """
     schema = str(document.get("schema"))
-    if not schema.startswith("modalkit.blind/") or "outcomes" not in document:
-        raise InputError(f"schema {schema!r} is not {SCHEMA}; give what `blind --json` wrote")
+    if schema not in (SCHEMA, EARLIER) or "outcomes" not in document:
+        raise InputError(
+            f"schema {schema!r} is neither {SCHEMA} nor {EARLIER}; give what `blind --json` wrote"
+        )
     from modalkit.simulator.drawing.ranges import DrawRanges
 
     outcomes = tuple(Outcome.from_json(row) for row in document["outcomes"])

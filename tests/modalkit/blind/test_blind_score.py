@@ -264,8 +264,9 @@ def test_json_is_strict_whole_and_can_be_scored_again() -> None:
     assert again == back
     assert json.loads(json.dumps(score_again(back | {"schema": "modalkit.blind/1"}).to_json())) == back
     assert len({row["salt"] for row in back["outcomes"]}) == 60
-    with pytest.raises(InputError, match=r"modalkit\.blind/2"):
-        score_again({"schema": "modalkit.modes/1"})
+    for other in ("modalkit.modes/1", "modalkit.blind/3"):
+        with pytest.raises(InputError, match=r"neither modalkit\.blind/2 nor"):
+            score_again(back | {"schema": other})
 
 
 def test_score_of_nothing_is_refused() -> None:
