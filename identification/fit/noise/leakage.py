@@ -12,27 +12,16 @@ their products add 9 % to the variance of a sum.
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
 
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.form import FORMS
 from acquisition.frfs.frf import FrfSet
-from identification.fit.noise.levels import window_length
 
 _ROUNDS = 6
 _PEAK = 6.0
 """Power over the expected one by which a value counts at the most [-], as in `identification.fit.noise.common`."""
 _STEP = 1e-3
 """Least ratio of a variance to the one of the round before [-]."""
-_COLOURS = 2
-"""Times that the colour of the own noise is estimated [-]; the second knows what leakage there is."""
-_PIECE = 16
-"""Lines of a piece, as in `identification.fit.noise.levels` [-]."""
-_AMONG = 5
-"""Neighbouring pieces of which the middle one counts [-]. Doubled: noise that rises within 80 lines is not followed."""
-_CHANCE = 2.5
-"""Mean square of the logarithm of a colour, times the lines of a window, that chance gives, as in
-`identification.fit.noise.levels` [-]."""
 
 
 def follows(frfs: FrfSet) -> bool:
@@ -74,10 +63,10 @@ def leaked(frfs: FrfSet, poles: ComplexArray, residues: ComplexArray) -> Complex
 
 
 def levelled(power: FloatArray, law: FloatArray, level: FloatArray) -> tuple[FloatArray, float]:
-    """Return variances a c + b law, (n_frf, n_lines), and b: a for each FRF, c for each line [unit squared], [-].
+    """Return variances a + b law, a for each FRF and b for all, and b: (n_frf, n_lines) [unit squared], [-].
 
     Values far above what is expected of them count as if they were less, so that a mode that is missing in the fit
-    does not pass for noise. FRFs have noise of their own in a colour, c, where the force gets weaker along the lines.
+    does not pass for noise.
 
     Parameters
     ----------
@@ -88,55 +77,19 @@ def levelled(power: FloatArray, law: FloatArray, level: FloatArray) -> tuple[Flo
     level : (n_frf,) array
         Start of a [unit squared].
     """
+    a = level[:, None]
     strong = law > 0.01 * law.max(axis=1, keepdims=True)
-    a, b = level, float(np.median(power[strong] / law[strong])) / np.log(2.0) if strong.any() else 0.0
-    colour = np.ones(power.shape[1])
-    for _ in range(_COLOURS):
-        colour = _colour(power, a, b * law)
-        a, b = _scored(power, law / colour, colour, a, b)
-    return a[:, None] * colour + b * law, b
-
-
-def _scored(
-    power: FloatArray, law: FloatArray, colour: FloatArray, a: FloatArray, b: float
-) -> tuple[FloatArray, float]:
-    """Return a and b by scoring from a start, with power and law in units of the colour."""
-    power = power / colour
-    guess = a[:, None] + b * law
+    b = float(np.median(power[strong] / law[strong])) / np.log(2.0) if strong.any() else 0.0
+    guess = a + b * law
     for _ in range(_ROUNDS):
         w = 1.0 / guess**2
         seen = np.minimum(power, _PEAK * guess)
-        a = np.maximum(np.sum(w * (seen - b * law), axis=1) / w.sum(axis=1), _STEP * a)
-        total = max(float(np.sum(w * law**2)), np.finfo(float).tiny)
-        b = max(float(np.sum(w * law * (seen - a[:, None]))) / total, _STEP * b)
-        guess = a[:, None] + b * law
-    return a, b
-
-
-def _colour(power: FloatArray, a: FloatArray, leakage: FloatArray) -> FloatArray:
-    """Return how the FRFs' own noise varies along the lines, alike in all: (n_lines,), of geometric mean 1 [-].
-
-    Medians over pieces and over neighbouring pieces do not see peaks that the fit lacks; pieces of leakage are
-    passed over. One that chance explains is none.
-    """
-    n_frf, n_lines = power.shape
-    window, pieces = window_length(n_lines), n_lines // _PIECE
-    if n_lines < 2 * window:
-        return np.ones(n_lines)
-    cut = (n_frf, pieces, _PIECE)
-    total = np.median(power[:, : pieces * _PIECE].reshape(cut), axis=2) / np.log(2.0)
-    own = total - np.median(leakage[:, : pieces * _PIECE].reshape(cut), axis=2)
-    valid = own > 0.5 * total
-    known = np.flatnonzero(valid.any(axis=0))
-    if len(known) < _AMONG:
-        return np.ones(n_lines)
-    logarithm = np.where(valid, np.log(np.where(valid, own, 1.0) / a[:, None]), 0.0)
-    mean = logarithm.sum(axis=0)[known] / valid.sum(axis=0)[known]
-    smooth = ndimage.median_filter(mean, _AMONG, mode="nearest")
-    smooth -= smooth.mean()
-    if np.mean(smooth**2) < _CHANCE / window:
-        return np.ones(n_lines)
-    return np.asarray(np.exp(np.interp(np.arange(n_lines), (known + 0.5) * _PIECE, smooth)))
+        a = np.maximum(np.sum(w * (seen - b * law), axis=1) / w.sum(axis=1), _STEP * a[:, 0])[:, None]
+        b = max(
+            float(np.sum(w * law * (seen - a)) / max(np.sum(w * law**2), np.finfo(float).tiny)), _STEP * b
+        )
+        guess = a + b * law
+    return guess, b
 
 
 def shared(leaked: ComplexArray, residual: ComplexArray, variance: FloatArray) -> float:

@@ -93,25 +93,6 @@ def test_hann_averages_whose_peaks_are_a_line_wide(form):
     assert any("Hann window" in w and "state frf_window" in w for w in model.warnings)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_noise_that_grows_where_the_force_gets_weak_does_not_deny_the_window(seed):
-    """A force 30 dB down at the end leaves more noise there: with one level for all lines no window fits."""
-    damping = 0.005
-    frfs = welch(
-        *structure(damping),
-        df=0.5,
-        rate=1600.0,
-        blocks=200,
-        seed=seed,
-        band=(40, 700),
-        corner=200.0,
-        noise=0.01,
-    )
-    model = identify(frfs)
-    assert model.frfs.line_shape is not None and model.frfs.line_shape.kind == "averaged"
-    check(model, damping, off=0.05)
-
-
 def test_a_window_that_is_stated_or_denied():
     frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=4)
     stated = identify(replace(frfs, window="hann"))
