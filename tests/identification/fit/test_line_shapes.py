@@ -47,26 +47,18 @@ def noisy(values, relative, rng):
     return values + size * (rng.standard_normal(values.shape) + 1j * rng.standard_normal(values.shape))
 
 
-def welch(
-    poles, residues, *, df, rate, blocks, seed, form="accelerance", band=(40, 160), corner=np.inf, noise=0.0
-):
-    """Average FRFs of a random force over half-overlapping Hann blocks of 1/df, with numpy alone.
-
-    The power of the force falls with the sixth power of frequency above the corner [Hz]; both signals have white noise
-    of a part of their r.m.s.
-    """
+def welch(poles, residues, *, df, rate, blocks, seed, form="accelerance"):
+    """Average FRFs of a random force over half-overlapping Hann blocks of 1/df, with numpy alone."""
     rng, samples = np.random.default_rng(seed), round(rate / df)
     length = samples * (blocks + 4)
     force = np.fft.rfft(rng.standard_normal(length))
     s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)[1:]
-    force[1:] /= np.sqrt(1 + (np.abs(s) / (2 * np.pi * corner)) ** 6)
     window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(samples) / samples)
     starts = np.arange(4 * samples, length - samples + 1, samples // 2)
-    kept = slice(round(band[0] / df), round(band[1] / df))
+    kept = slice(round(40 / df), round(160 / df))
 
     def spectra(line):
         wave = np.fft.irfft(line, length)
-        wave = wave + noise * np.std(wave) * rng.standard_normal(length)
         return np.array([np.fft.rfft(window * wave[a : a + samples])[kept] for a in starts])
 
     push = spectra(force)
