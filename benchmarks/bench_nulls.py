@@ -59,8 +59,7 @@ def of_trial(seed: int, index: int, plan: DrawRanges) -> tuple[str, Found, float
     for name in ("all", *CHANNELS):
         keep = point.comparison.stated & ((name == "all") | point.comparison.of(name))
         if keep.any():
-            (part,) = gaussian(point.comparison, (1.0,), keep)
-            found[name] = part.chi2, int(keep.sum())
+            found[name] = float(gaussian(point.comparison, (1.0,), keep).chi2[0, 0]), int(keep.sum())
     kind = f"{trial.truth.kind}, baseline" if trial.truth.baseline else trial.truth.kind
     return kind, found, p_value(point)
 

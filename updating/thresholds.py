@@ -99,10 +99,6 @@ believed. Doubled: nothing."""
 SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
 """How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
 
-NEGLIGIBLE_SCALE = 40.0
-"""Scales of the noise of the shapes beyond one whose log-likelihood is so far below the best are not added up [-]: they
-are some 1e-17 of it. Doubled: nothing but time."""
-
 REPEATED_SCATTER_PRIOR = (0.85, 0.12, 0.025, 0.004, 0.001)
 """Prior of each of these where repeated hits show the scatter [-]. Judged: some one in seven stated scatters is too
 small by two or more. The p-value of a fit is never above the tail of this prior at the scale that it needs."""

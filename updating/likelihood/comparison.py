@@ -153,11 +153,16 @@ class Comparison:
         """
         if self.idealised is None and self.unseen is None:
             return self
-        taken = np.zeros_like(self.variance)
-        for part, of in ((self.idealised, share), (self.unseen, unseen)):
+        return replace(self, variance=self.variances([(share, unseen)])[0], idealised=None, unseen=None)
+
+    def variances(self, sizes: Sequence[tuple[float, float]]) -> FloatArray:
+        """Return the variance at some ``sizes`` of the two doubts, shape (n_sizes, n) [-]."""
+        found = np.tile(self.variance, (len(sizes), 1))
+        left = 1 - np.array(sizes) ** 2
+        for part, of in zip((self.idealised, self.unseen), left.T, strict=True):
             if part is not None:
-                taken = taken + (1 - of**2) * part
-        return replace(self, variance=self.variance - taken, idealised=None, unseen=None)
+                found -= of[:, None] * part
+        return found
 
     @property
     def sizes(self) -> tuple[tuple[float, float], ...]:

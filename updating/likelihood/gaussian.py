@@ -11,19 +11,17 @@ of, and one that is not still has it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.linalg.lapack import dposv
 
-from acquisition.arrays import BoolArray, FloatArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.separate import Separate, separate
+from updating.likelihood.separate import Beside, separate
 from updating.thresholds import (
     LARGEST_SENSITIVITY,
-    NEGLIGIBLE_SCALE,
     SHAPE_NOISE_SCALES,
 )
 
@@ -79,32 +77,11 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
-    sizes = comparison.sizes
-    prior = dict(zip(scales, np.log(comparison.scale_prior if len(scales) > 1 else (1.0,)), strict=True))
-    rows = slice(None) if keep is None else keep
-    groups = separate(comparison.nuisance[rows], comparison.scaled[rows])
-    parts = [
-        replace(part, share=share, unseen=unseen)
-        for share, unseen in sizes
-        for part in _worth_adding(gaussian(comparison.settled(share, unseen), scales, keep, groups))
-    ]
-    score = np.array([part.log_likelihood + prior[part.scale] for part in parts]) - np.log(len(sizes))
-    top = parts[int(np.argmax(score))]
-    peak = float(score.max())
-    return replace(top, log_likelihood=peak + float(np.log(np.sum(np.exp(score - peak)))))
-
-
-def _worth_adding(parts: Iterator[Marginal]) -> Iterator[Marginal]:
-    """Yield what is worth adding up of the same data with ever noisier shapes: all until it is far past the best.
-
-    What the noise adds to the determinant grows with its logarithm, what it takes from chi-squared falls.
-    """
-    best = -np.inf
-    for part in parts:
-        yield part
-        best = max(best, part.log_likelihood)
-        if part.log_likelihood < best - NEGLIGIBLE_SCALE:
-            return
+    parts = gaussian(comparison, scales, keep, sizes=comparison.sizes)
+    prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
+    score = parts.log_likelihood + prior - np.log(len(parts.sizes))
+    top = np.unravel_index(int(np.argmax(score)), score.shape)
+    return replace(parts.at(int(top[0]), int(top[1])), log_likelihood=float(np.logaddexp.reduce(score, axis=None)))
 
 
 def _sound(comparison: Comparison) -> bool:
@@ -117,52 +94,92 @@ def _sound(comparison: Comparison) -> bool:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A comparison with its nuisances integrated out, at sizes of the doubts and scales of the noise of the shapes.
+
+    Parameters
+    ----------
+    sizes : (b,) tuple of (float, float)
+        Shares of the two doubts, see :attr:`Comparison.sizes` [-].
+    scales : (s,) tuple of float
+        Scales of the noise of the shapes [-].
+    log_likelihood, chi2 : (b, s) arrays
+        As in :class:`Marginal`.
+    precision : (b, s, c + 1, c + 1) array
+        Of the nuisances that all data have in common; in the last row and column what the residual pulls [-].
+    own : Beside
+        The other nuisances.
+    common : (c,) int array
+        Which are those in common.
+    shape : (int, int)
+        Number of data and of nuisances.
+    """
+
+    sizes: tuple[tuple[float, float], ...]
+    scales: tuple[float, ...]
+    log_likelihood: FloatArray
+    chi2: FloatArray
+    precision: FloatArray
+    own: Beside
+    common: IntArray
+    shape: tuple[int, int]
+
+    def at(self, i: int, k: int) -> Marginal:
+        """Return the marginal at the i-th size and k-th scale, with its most probable nuisances."""
+        precision, scale = self.precision[i, k], self.scales[k]
+        shift = np.zeros(self.shape[1])
+        shift[self.common] = np.linalg.solve(precision[:-1, :-1], precision[:-1, -1])
+        self.own.fill(shift, i, scale, np.append(-shift[self.common], 1.0))
+        likelihood, chi2 = float(self.log_likelihood[i, k]), float(self.chi2[i, k])
+        return Marginal(likelihood, chi2, shift, self.shape[0], scale, *self.sizes[i])
+
+
 def gaussian(
     comparison: Comparison,
     scales: Sequence[float],
     keep: BoolArray | None = None,
-    groups: Separate | None = None,
-) -> Iterator[Marginal]:
-    """Integrate the nuisances out at one scale of the noise of the shapes after the other; see :func:`marginal`.
+    *,
+    sizes: Sequence[tuple[float, float]] = ((1.0, 1.0),),
+) -> Parts:
+    """Integrate the nuisances out at every size of the doubts and every scale of the noise of the shapes.
 
-    ``groups`` are those of the data kept, where they are found already.
+    All of them weigh the same Gram matrices, one of the shapes and one of the rest. The last pivot of the Cholesky
+    factor of a precision bordered by what the residual pulls is chi-squared (Golub and Van Loan 2013, Matrix
+    Computations, section 4.2), so that one batch of factors gives all likelihoods.
+
+    Parameters
+    ----------
+    comparison, keep
+        As in :func:`marginal`.
+    scales : (s,) sequence of float
+        Scales of the noise of the shapes [-].
+    sizes : (b,) sequence of (float, float)
+        Shares of the two doubts, see :attr:`Comparison.sizes` [-].
     """
     rows = slice(None) if keep is None else keep
-    r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.variance[rows]
-    shapes = comparison.scaled[rows]
-    groups = separate(j, shapes) if groups is None else groups
+    r, j, shapes = comparison.residual[rows], comparison.nuisance[rows], comparison.scaled[rows]
+    d = comparison.variances(sizes)[:, rows]
+    groups = separate(j, shapes)
     data = np.column_stack([j[:, groups.common], r])
-    # every scale weighs the same two Gram matrices, those of the shapes and of the rest
-    gram_matrices = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
-    own = groups.beside(d, data)
-    p, noise = len(groups.common), float(np.sum(np.log(d))) + len(r) * np.log(2 * np.pi)
-    for scale in scales:
-        gram = gram_matrices[0] + gram_matrices[1] / scale**2 - own.share(scale)
-        load = gram[:p, p]
-        shift, pivots = _solved(np.eye(p) + gram[:p, :p], load)
-        chi2 = float(gram[p, p] - load @ shift)
-        log_det = 2 * float(np.log(pivots).sum() + shapes.sum() * np.log(scale)) + own.log_det(scale)
-        whole = np.zeros(j.shape[1])
-        whole[groups.common] = shift
-        own.fill(whole, scale, np.append(-shift, 1.0))
-        yield Marginal(-0.5 * (chi2 + log_det + noise), chi2, whole, len(r), scale)
-
-
-def _solved(matrix: FloatArray, load: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Solve with a positive definite matrix (p, p), by one call of LAPACK: most are small.
-
-    Returns
-    -------
-    solution : (p,) array
-    pivots : (p,) array
-        Diagonal of the Cholesky factor.
-    """
-    if not len(load):
-        return load, load
-    lower, solution, failed = dposv(matrix, load, lower=1)
-    if failed:
-        raise np.linalg.LinAlgError("the precision of the nuisances is not positive definite")
-    return solution, np.diagonal(lower)
+    own, p, factor = groups.beside(d, data), len(groups.common), np.asarray(scales, dtype=float)
+    rest, scaled = ((data[part].T / d[:, None, part]) @ data[part] for part in (~shapes, shapes))
+    precision = rest[:, None] + scaled[:, None] / factor[:, None, None] ** 2 - own.share(factor)
+    precision += np.eye(p + 1)  # that of the residual's corner goes from chi-squared again
+    pivots = np.diagonal(np.linalg.cholesky(precision), axis1=2, axis2=3)
+    chi2 = np.maximum(pivots[..., -1] ** 2 - 1.0, 0.0)
+    log_det = 2 * np.log(pivots[..., :-1]).sum(axis=-1) + 2 * shapes.sum() * np.log(factor)
+    noise = np.log(d).sum(axis=1)[:, None] + len(r) * np.log(2 * np.pi)
+    return Parts(
+        sizes=tuple(sizes),
+        scales=tuple(factor.tolist()),
+        log_likelihood=-0.5 * (chi2 + log_det + own.log_det(factor) + noise),
+        chi2=chi2,
+        precision=precision,
+        own=own,
+        common=groups.common,
+        shape=(len(r), j.shape[1]),
+    )
 
 
 def normal_equations(

@@ -48,20 +48,20 @@ class Separate:
     common: IntArray
 
     def beside(self, variance: FloatArray, data: FloatArray) -> Beside:
-        """Return the groups beside columns of data (n, c), with a noise of so much variance (n,) [-]."""
+        """Return the groups beside columns of data (n, c), with noises of so much variance each (b, n) [-]."""
         if not len(self.starts):
-            return Beside(self, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, 0, data.shape[1])))
+            return Beside(self, *(np.zeros((len(variance), 0, *end)) for end in ((0,), (0, 0), (0, data.shape[1]))))
         power, turn, rotated = self._rotated(variance)
         return Beside(self, power, turn, self._products(rotated, data))
 
     def precise(self, variance: FloatArray, data: FloatArray) -> FloatArray:
-        """Return ``(D + L L^T)^-1`` times columns (n, c): noise and groups integrated out [-]."""
+        """Return ``(D + L L^T)^-1`` times columns (n, c): noise (n,) and groups integrated out [-]."""
         found = data / variance[:, None]
         if not len(self.starts):
             return found
-        power, _, rotated = self._rotated(variance)
-        shares = self._products(rotated, data) / (1.0 + power)[:, :, None]
-        found[self.rows] -= np.einsum("kq,kqc->kc", rotated, np.repeat(shares, self._lengths, axis=0))
+        power, _, rotated = self._rotated(variance[None])
+        shares = (self._products(rotated, data) / (1.0 + power)[..., None])[0]
+        found[self.rows] -= np.einsum("kq,kqc->kc", rotated[0], np.repeat(shares, self._lengths, axis=0))
         return found
 
     @property
@@ -69,43 +69,43 @@ class Separate:
         return np.diff(np.append(self.starts, len(self.rows)))
 
     def _rotated(self, variance: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Turn the nuisances of each group into each other until they are orthogonal beside the noise.
+        """Turn the nuisances of each group into each other until they are orthogonal beside each noise.
 
         Returns
         -------
-        power : (m, q) array
+        power : (b, m, q) array
             Their squares beside the noise, the eigenvalues of ``L^T D^-1 L`` [-].
-        turn : (m, q, q) array
+        turn : (b, m, q, q) array
             The eigenvectors, in columns.
-        rotated : (k, q) array
+        rotated : (b, k, q) array
             ``D^-1 L`` turned.
         """
-        over = self.values / variance[self.rows, None]
-        power, turn = np.linalg.eigh(self._summed(over[:, :, None] * self.values[:, None, :]))
-        rotated = np.einsum("kq,kqr->kr", over, np.repeat(turn, self._lengths, axis=0))
+        over = self.values / variance[:, self.rows, None]
+        power, turn = np.linalg.eigh(self._summed(over[..., None] * self.values[:, None, :]))
+        rotated = np.einsum("bkq,bkqr->bkr", over, np.repeat(turn, self._lengths, axis=1))
         return np.maximum(power, 0.0), turn, rotated
 
     def _products(self, rotated: FloatArray, data: FloatArray) -> FloatArray:
-        return self._summed(rotated[:, :, None] * data[self.rows][:, None, :])
+        return self._summed(rotated[..., None] * data[self.rows][:, None, :])
 
     def _summed(self, terms: FloatArray) -> FloatArray:
-        """Add up what belongs to the rows of each group."""
-        return np.add.reduceat(terms, self.starts)
+        """Add up what belongs to the rows of each group, (b, k, ...)."""
+        return np.add.reduceat(terms, self.starts, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Beside:
-    """Groups of nuisances beside columns of data, the noise of the shapes to be scaled.
+    """Groups of nuisances beside columns of data and b noises, those of the shapes to be scaled.
 
     Parameters
     ----------
     groups : Separate
         Which they are.
-    power : (m, q) array
+    power : (b, m, q) array
         Squares of the turned nuisances beside the noise [-].
-    turn : (m, q, q) array
+    turn : (b, m, q, q) array
         How they were turned.
-    products : (m, q, c) array
+    products : (b, m, q, c) array
         What they have in common with the columns [-].
     """
 
@@ -114,32 +114,31 @@ class Beside:
     turn: FloatArray
     products: FloatArray
 
-    def _reduced(self, scale: float) -> FloatArray:
-        """By how much the noise of each group takes from its squares, (m, 1) [-]."""
-        return np.where(self.groups.scaled, scale**-2, 1.0)[:, None]
+    def _reduced(self, scales: FloatArray) -> FloatArray:
+        """By how much the noises (s,) of each group take from its squares, (s, m, 1) [-]."""
+        return np.where(self.groups.scaled, scales[:, None] ** -2, 1.0)[..., None]
 
-    def share(self, scale: float) -> FloatArray:
-        """Return what the groups explain of the Gram matrix (c, c) of the columns [-]."""
-        if not len(self.power):
-            return np.zeros((self.products.shape[2],) * 2)
-        reduced, count = self._reduced(scale), self.products.shape[2]
-        weights = (reduced**2 / (1.0 + reduced * self.power)).reshape(-1, 1)
-        flat = self.products.reshape(-1, count)
-        return np.asarray(flat.T @ (weights * flat))
+    def share(self, scales: FloatArray) -> FloatArray:
+        """Return what the groups explain of the Gram matrix of the columns at scales (s,), (b, s, c, c) [-]."""
+        count, (noises, groups, size) = self.products.shape[-1], self.power.shape
+        if not groups:
+            return np.zeros((noises, len(scales), count, count))
+        reduced = self._reduced(scales)
+        weights = (reduced**2 / (1.0 + reduced * self.power[:, None])).reshape(noises, len(scales), 1, -1)
+        flat = self.products.reshape(noises, 1, groups * size, count)
+        return np.asarray((np.swapaxes(flat, 2, 3) * weights) @ flat)
 
-    def log_det(self, scale: float) -> float:
-        """Return the logarithm of the determinant of what they add to the noise [-]."""
-        if not len(self.power):
-            return 0.0
-        return float(np.sum(np.log1p(self._reduced(scale) * self.power)))
+    def log_det(self, scales: FloatArray) -> FloatArray:
+        """Return the logarithm of the determinant of what they add to the noise at scales (s,), (b, s) [-]."""
+        return np.asarray(np.log1p(self._reduced(scales) * self.power[:, None]).sum(axis=(2, 3)))
 
-    def fill(self, shift: FloatArray, scale: float, left: FloatArray) -> None:
-        """Put the most probable values into their places of ``shift`` (p,), the columns adding up by ``left`` (c,)."""
-        if not len(self.power):
+    def fill(self, shift: FloatArray, noise: int, scale: float, left: FloatArray) -> None:
+        """Put the most probable values beside one noise into ``shift`` (p,), the columns adding up by ``left`` (c,)."""
+        if not self.power.shape[1]:
             return
-        reduced, columns = self._reduced(scale), self.groups.columns
-        turned = reduced * (self.products @ left) / (1.0 + reduced * self.power)
-        values = np.einsum("mqr,mr->mq", self.turn, turned)
+        reduced, columns = self._reduced(np.array([scale]))[0], self.groups.columns
+        turned = reduced * (self.products[noise] @ left) / (1.0 + reduced * self.power[noise])
+        values = np.einsum("mqr,mr->mq", self.turn[noise], turned)
         shift[columns[columns >= 0]] = values[columns >= 0]
 
 

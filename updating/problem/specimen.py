@@ -272,8 +272,8 @@ class SpecimenProblem:
             there = self.compare(NOMINAL, shift)
             # a comparison's residual is carried back to no shift: by its own slope there, by the first one here
             off = there.residual - start.residual - (there.nuisance - start.nuisance)[:, :count] @ shift
-            (left,) = gaussian(replace(start, residual=np.nan_to_num(off)), SHAPE_NOISE_SCALES[:1])
-            found.append(float(np.sqrt(max(left.chi2, 0.0))))
+            left = gaussian(replace(start, residual=np.nan_to_num(off)), SHAPE_NOISE_SCALES[:1]).chi2
+            found.append(float(np.sqrt(left[0, 0])))
         return np.array(found)
 
     def strain(self, shift: FloatArray) -> float:

@@ -55,7 +55,9 @@ def test_the_likelihood_is_that_of_one_normal_distribution(pattern: Pattern, see
     data = comparison(pattern, seed)
     keep = np.random.default_rng(seed + 1).random(len(data.residual)) < share
     keep[0] = True
-    for found in gaussian(data, SHAPE_NOISE_SCALES[::3], keep):
+    parts = gaussian(data, SHAPE_NOISE_SCALES[::3], keep)
+    for k in range(len(parts.scales)):
+        found = parts.at(0, k)
         whole = covariance(data, found.scale, keep)
         residual = data.residual[keep]
         expected = multivariate_normal(np.zeros(len(residual)), whole).logpdf(residual)

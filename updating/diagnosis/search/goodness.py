@@ -67,8 +67,8 @@ def _of_scales(comparison: Comparison, fitted: int) -> list[dict[str, float]]:
         if not keep.any():
             continue
         freedom = max(int(keep.sum()) - (fitted if every else 0), 1)
-        for values, part in zip(tried, gaussian(comparison, scales, keep), strict=True):
-            values[name] = float(chi2.sf(part.chi2, freedom))
+        for values, square in zip(tried, gaussian(comparison, scales, keep).chi2[0].tolist(), strict=True):
+            values[name] = float(chi2.sf(square, freedom))
     return tried
 
 
