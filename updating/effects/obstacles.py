@@ -8,7 +8,6 @@ from enum import Enum
 import numpy as np
 
 from updating.prediction.predict import Predictor
-from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 
 
@@ -59,7 +58,7 @@ def damping_obstacle(predictor: Predictor) -> Obstacle | None:
 
 def shape_obstacle(measured: Measured, least: int) -> Obstacle | None:
     """Return why so few points do not tell one of them apart, or None."""
-    moved = measured.hit if roving(measured) == "hit" else measured.seen
+    moved = measured.hit if measured.roving == "hit" else measured.seen
     count = len(np.unique(moved[moved >= 0]))
     if count >= least:
         return None

@@ -81,7 +81,9 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
     score = parts.log_likelihood + prior - np.log(len(parts.sizes))
     top = np.unravel_index(int(np.argmax(score)), score.shape)
-    return replace(parts.at(int(top[0]), int(top[1])), log_likelihood=float(np.logaddexp.reduce(score, axis=None)))
+    return replace(
+        parts.at(int(top[0]), int(top[1])), log_likelihood=float(np.logaddexp.reduce(score, axis=None))
+    )
 
 
 def _sound(comparison: Comparison) -> bool:

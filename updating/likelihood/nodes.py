@@ -16,7 +16,6 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
 from updating.likelihood.hit_scatter import level_errors
 from updating.prediction.prediction import Prediction
-from updating.test_data.chain import roving
 from updating.thresholds import LEAST_CONSTANT_NOISE
 
 
@@ -72,11 +71,11 @@ class Nodes:
     def _fixed(self) -> IntArray:
         """Point of the transducer of every FRF that several share, (n_frf,)."""
         test = self.setting.measured
-        return test.hit if roving(test) == "seen" else test.seen
+        return test.hit if test.roving == "seen" else test.seen
 
     def _elsewhere(self, now: Prediction) -> FloatArray:
         """Return the shapes where the other one was, (n_frf, n_modes) [kg^-1/2]."""
-        return now.seen if roving(self.setting.measured) == "seen" else now.hit
+        return now.seen if self.setting.measured.roving == "seen" else now.hit
 
     @cached_property
     def _shared(self) -> IntArray:

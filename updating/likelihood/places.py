@@ -11,7 +11,6 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
 from updating.likelihood.hit_scatter import HitScatter
 from updating.prediction.prediction import Prediction
-from updating.test_data.chain import roving
 from updating.thresholds import END_REACH, REGISTRATION_SHARE
 
 
@@ -58,10 +57,10 @@ class Places:
         """
         test = self.setting.measured
         ends = {"seen": now.seen, "hit": now.hit}
-        shared = "hit" if roving(test) == "seen" else "seen"
+        shared = "hit" if test.roving == "seen" else "seen"
         point = getattr(test, shared)
         alike = (point[:, None] == point) & (test.hit >= 0)
-        others = level * now.gain * ends[roving(test)]
+        others = level * now.gain * ends[test.roving]
         power = alike @ others**2
         known = (np.sum(alike, axis=1) > 1)[:, None] & (power > 0)
         ends[shared] = np.where(

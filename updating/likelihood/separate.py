@@ -50,7 +50,9 @@ class Separate:
     def beside(self, variance: FloatArray, data: FloatArray) -> Beside:
         """Return the groups beside columns of data (n, c), with noises of so much variance each (b, n) [-]."""
         if not len(self.starts):
-            return Beside(self, *(np.zeros((len(variance), 0, *end)) for end in ((0,), (0, 0), (0, data.shape[1]))))
+            return Beside(
+                self, *(np.zeros((len(variance), 0, *end)) for end in ((0,), (0, 0), (0, data.shape[1])))
+            )
         power, turn, rotated = self._rotated(variance)
         return Beside(self, power, turn, self._products(rotated, data))
 

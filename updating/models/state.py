@@ -120,6 +120,8 @@ class State(Displayed):
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
+        if other is NOMINAL or self is NOMINAL:
+            return self if other is NOMINAL else other
         return State(
             factors=MappingProxyType(_multiplied(self.factors, other.factors)),
             regional=MappingProxyType(_multiplied(self.regional, other.regional)),

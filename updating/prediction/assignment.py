@@ -9,7 +9,6 @@ from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
-from updating.test_data.chain import roving
 from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
 
 FREQUENCY_WEIGHT = 0.5
@@ -37,7 +36,7 @@ def mac_of_constants(
     """
     rows = slice(None) if trusted is None else trusted
     a, b = measured.constants[rows], prediction.constants[rows]
-    moves = np.sum(getattr(prediction, roving(measured))[rows] ** 2, axis=0)
+    moves = np.sum(getattr(prediction, measured.roving)[rows] ** 2, axis=0)
     unseen = moves < UNSEEN**2 * np.max(moves, initial=0.0, where=np.isfinite(moves))
     power = np.maximum(np.outer(np.sum(a**2, axis=0), np.sum(b**2, axis=0)), 1e-300)
     return np.where(unseen, 0.0, (a.T @ b) ** 2 / power)

@@ -11,7 +11,6 @@ import numpy as np
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.assignment import mac_of_constants, match
 from updating.prediction.prediction import Prediction
-from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 
 SPOILT = 0.8
@@ -194,7 +193,7 @@ def _agreement(measured: Measured, prediction: Prediction, rows: BoolArray) -> f
 
 def _ends(measured: Measured) -> tuple[IntArray, IntArray]:
     """Return the point that roved and the one that stayed of every row, (n_frf,) each."""
-    return (measured.hit, measured.seen) if roving(measured) == "hit" else (measured.seen, measured.hit)
+    return (measured.hit, measured.seen) if measured.roving == "hit" else (measured.seen, measured.hit)
 
 
 def _channels(measured: Measured) -> tuple[_Channel, ...]:
@@ -215,7 +214,7 @@ def _enough(measured: Measured, rows: BoolArray) -> bool:
 
 def left_out(measured: Measured, trusted: BoolArray) -> str:
     """Name the points and the fixed sensors whose rows are not trusted."""
-    words = ("hits at point", "sensor at point") if roving(measured) == "hit" else ("point", "hits at point")
+    words = ("hits at point", "sensor at point") if measured.roving == "hit" else ("point", "hits at point")
     parts = []
     for word, end in zip(words, _ends(measured), strict=True):
         lost = sorted(

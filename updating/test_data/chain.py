@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -72,9 +71,3 @@ def measurement_chain(measured: Measured, state: State) -> MeasurementChain:
 def level_of(gain: float, measured: Measured) -> float:
     """Return by what factor a gain of the FRFs changes the constants: that of shapes is its root [-]."""
     return float(np.sqrt(gain)) if measured.bare and len(measured.hit) else gain
-
-
-def roving(measured: Measured) -> Literal["seen", "hit"]:
-    """Return the end that was moved from point to point: the hammer, or the sensor."""
-    seen, hit = np.unique(measured.seen), np.unique(measured.hit[measured.hit >= 0])
-    return "seen" if len(seen) > len(hit) else "hit"

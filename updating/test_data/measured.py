@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -161,6 +162,12 @@ class Measured(Displayed):
     def bare(self) -> bool:
         """Whether the constants are components of shapes, joined to no point of force."""
         return bool((self.hit < 0).all())
+
+    @cached_property
+    def roving(self) -> Literal["seen", "hit"]:
+        """The end that was moved from point to point: the hammer, or the sensor."""
+        seen, hit = np.unique(self.seen), np.unique(self.hit[self.hit >= 0])
+        return "seen" if len(seen) > len(hit) else "hit"
 
     def same_signs(self, constants: FloatArray) -> FloatArray:
         """Return by what sign each predicted mode, (n_frf, n_modes), is to be taken; a product's is not free [-]."""

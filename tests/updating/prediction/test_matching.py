@@ -14,7 +14,6 @@ from updating import Measured, Predictor
 from updating.models.state import State
 from updating.prediction.matching import mac_of_constants, match, pair_modes
 from updating.prediction.prediction import Prediction
-from updating.test_data.chain import roving
 
 LOOK = Predictor(BEAM, blank(POINTS))
 MODEL = LOOK.predict(count=6)
@@ -244,10 +243,10 @@ def test_what_rounding_leaves_of_a_mode_across_the_points_is_like_nothing(seed: 
     """A mode that no point can see lies nearer in frequency, and rounding gave it the shape of the measured one."""
     rng = np.random.default_rng(seed)
     test = seen_as(MODEL.select(np.array([0, 2, 3])))
-    constants, end = MODEL.constants.copy(), getattr(MODEL, roving(test)).copy()
+    constants, end = MODEL.constants.copy(), getattr(MODEL, test.roving).copy()
     noise = 1 + 0.1 * rng.standard_normal(len(constants))
     constants[:, 1], end[:, 1] = (1e-13 * part[:, 2] * noise for part in (MODEL.constants, end))
-    model = replace(MODEL, constants=constants, frequency=MODEL.frequency.copy(), **{roving(test): end})
+    model = replace(MODEL, constants=constants, frequency=MODEL.frequency.copy(), **{test.roving: end})
     model.frequency[1] = test.frequency[1]
     model.frequency[2] = 1.2 * test.frequency[1]
     paired = pair_modes(test, model)

@@ -10,7 +10,7 @@ from updating_cases import BEAM, PLATE, POINTS, blank
 
 from updating import Measured, Predictor
 from updating.models.state import State
-from updating.test_data.chain import measurement_chain, roving
+from updating.test_data.chain import measurement_chain
 
 GRID = np.array([[x, y] for x in (0.1, 0.22, 0.376) for y in (0.0, 0.09, 0.2)])
 TESTS = {"beam": Predictor(BEAM, blank(POINTS)), "plate": Predictor(PLATE, blank(GRID))}
@@ -86,9 +86,9 @@ def test_moving_the_hammer_leaves_the_sensor_at_the_same_point(name: str) -> Non
 @both
 def test_the_end_that_roves_is_told(name: str) -> None:
     test = TESTS[name].measured
-    assert roving(test) == "hit"
-    assert roving(roved(test)) == "seen"
+    assert test.roving == "hit"
+    assert roved(test).roving == "seen"
 
 
 def test_shapes_alone_are_seen() -> None:
-    assert roving(blank(POINTS, shapes_only=True)) == "seen"
+    assert blank(POINTS, shapes_only=True).roving == "seen"

@@ -10,7 +10,6 @@ from updating.effects.measurement.shape_screening import PROMISING, ShapeScreeni
 from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import Role, State
 from updating.prediction.predict import Predictor
-from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 
 OTHER_END = 0.5
@@ -58,7 +57,7 @@ class ChannelGain(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the points whose level spoils the agreement of the shapes most, and each of several sensors."""
         test = predictor.measured
-        role, stayed = roving(test), points_of(test, _other(test))
+        role, stayed = test.roving, points_of(test, _other(test))
         points, several = points_of(test, role), len(stayed) > 1
         share = (1.0 - OTHER_END * several) / max(len(points), 1)
         found = screen(predictor)
@@ -85,7 +84,7 @@ class ChannelGain(Effect):
 
 
 def _other(test: Measured) -> str:
-    return "seen" if roving(test) == "hit" else "hit"
+    return "seen" if test.roving == "hit" else "hit"
 
 
 def _misfit(found: ShapeScreening, point: Role) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from acquisition.errors import StudyError
 from updating.models.state import Role
-from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 
 
@@ -59,7 +58,7 @@ def channel_point(measured: Measured, channel: str) -> tuple[Literal["seen", "hi
     StudyError
         If no such sensor stayed.
     """
-    role: Literal["seen", "hit"] = "seen" if roving(measured) == "hit" else "hit"
+    role: Literal["seen", "hit"] = "seen" if measured.roving == "hit" else "hit"
     fixed = points_of(measured, role)
     asked = channel.strip().upper()
     names = {p: channel_of(measured, p).upper() for p in fixed}
@@ -75,7 +74,7 @@ def concerned(measured: Measured, values: Mapping[str, Any]) -> list[Role]:
     """Return the role and index of what an effect means: the sensor in ``channel``, or the roving ``points``."""
     if "channel" in values:
         return [channel_point(measured, values["channel"])]
-    return [(roving(measured), p) for p in indices(measured, values["points"])]
+    return [(measured.roving, p) for p in indices(measured, values["points"])]
 
 
 def concerned_places(measured: Measured, values: Mapping[str, Any]) -> tuple[tuple[float, float, float], ...]:

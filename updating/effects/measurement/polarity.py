@@ -10,7 +10,6 @@ from updating.effects.measurement.shape_screening import PROMISING, screen
 from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.test_data.chain import roving
 
 MANY = 4
 """At most so many points of one test are reversed."""
@@ -48,7 +47,7 @@ class Polarity(Effect):
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the sets of points whose reversal brings the shapes nearest to the model's."""
-        role = roving(predictor.measured)
+        role = predictor.measured.roving
         found = screen(predictor)
         points = points_of(predictor.measured, role)
         chosen: list[int] = []

@@ -10,7 +10,6 @@ from updating.effects.measurement.shape_screening import PROMISING, screen
 from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.test_data.chain import roving
 
 FARTHEST = 0.15
 """How far from its stated place a point is sought, of the length [-]."""
@@ -50,7 +49,7 @@ class PositionError(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the points that spoil the agreement of the shapes most."""
         test = predictor.measured
-        role = roving(test)
+        role = test.roving
         found = screen(predictor)
         points = points_of(test, role)
         worst = np.argsort([found.without(role, p) for p in points])[:PROMISING]
@@ -71,7 +70,7 @@ class PositionError(Effect):
         test = predictor.measured
         (point,) = indices(test, (values["point"],))
         away = tuple(values.get(name, 0.0) for name in ("dx", "dy")[: predictor.spec.dim])
-        return State(moved={(roving(test), point): away})
+        return State(moved={(test.roving, point): away})
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return where the point really was."""

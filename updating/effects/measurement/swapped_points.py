@@ -12,7 +12,6 @@ from updating.effects.measurement.shape_screening import PROMISING, screen
 from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.test_data.chain import roving
 
 
 class SwappedPoints(Effect):
@@ -39,7 +38,7 @@ class SwappedPoints(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the pairs whose exchange brings the shapes nearest to the model's."""
         test = predictor.measured
-        role = roving(test)
+        role = test.roving
         found = screen(predictor)
         pairs = list(combinations(points_of(test, role), 2))
         misfits = [found.misfit({}, ((role, a, b),)) for a, b in pairs]
@@ -52,7 +51,7 @@ class SwappedPoints(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the two labels exchanged."""
         a, b = indices(predictor.measured, values["points"])
-        return State(exchanged=((roving(predictor.measured), a, b),))
+        return State(exchanged=((predictor.measured.roving, a, b),))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the points."""
