@@ -439,18 +439,16 @@ narrow peak gets two thirds as many samples."""
 SAMPLE_FREEDOM = 5
 """Degrees of freedom of the t-distributions that samples are drawn from: heavy tails, a finite variance."""
 
-SAMPLING_ROUNDS = 2
-"""How often the samples are drawn anew when too few of them carry the weight."""
-
-MOST_SAMPLES = 256
-"""Most samples drawn at a time, each a prediction. Doubled: evidence errs by 0.7 of what it did, at twice the
-time."""
+MOST_AT_ONCE, MOST_SAMPLES = 256, 1024
+"""Most samples drawn in a round, and in all, each a prediction. Doubled: evidence errs by 0.7 of what it did, at twice
+the time."""
 
 DRAFT_SAMPLES = 512
 """Samples drawn for a draft, which cost no predictions."""
 
-ENOUGH_SAMPLES = 10.0
-"""Effective number of samples that is enough: evidence is off by a third, as the odds of one among three."""
+ENOUGH_SAMPLES = 100.0
+"""Effective number of samples that is enough: evidence is off by a tenth, ends of intervals by a quarter of a standard
+deviation."""
 
 DIFFERENCE_STEP = 1e-3
 """Step of the differences by which sensitivities are taken, in prior quantiles [-]: between round-off and

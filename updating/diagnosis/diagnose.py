@@ -36,7 +36,7 @@ from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, 
 from updating.problem.specimen import SpecimenProblem
 from updating.problem.stated_doubts import of_updates_alone
 from updating.test_data.same_places import unmatched
-from updating.thresholds import FEWEST_DATA
+from updating.thresholds import ENOUGH_SAMPLES, FEWEST_DATA, NEGLIGIBLE_PROBABILITY
 
 
 def diagnose(
@@ -323,6 +323,16 @@ def _on_fit(leader: Explanation, inconsistent: Sequence[Split], *, significant: 
     return notes
 
 
+def _on_samples(found: Search) -> list[str]:
+    """Return which of the two most probable sets rest on few samples."""
+    return [
+        f"the probability and the intervals of {' + '.join(row.names) or 'no cause'} are rough: they rest on "
+        f"{row.explanation.effective:.0f} effective samples; {ENOUGH_SAMPLES:.0f} are wanted"
+        for row in found.compared[:2]
+        if row.probability > NEGLIGIBLE_PROBABILITY and 0 < row.explanation.effective < ENOUGH_SAMPLES
+    ]
+
+
 def _notes(problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, ...], ...]) -> list[str]:
     """Return what the reader ought to know about how the answer was reached."""
     notes = []
@@ -331,6 +341,7 @@ def _notes(problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, ...]
             "the theory of the model leaves out shear and rotary inertia, which show beyond the noise: "
             "every set of causes was weighed with and without them"
         )
+    notes += _on_samples(found)
     for one in problem.specimens:
         notes += notes_on_doubtful(one, " or ".join(" + ".join(names) for names in sets))
         if one.theory_error is not None:

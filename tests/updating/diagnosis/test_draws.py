@@ -1,16 +1,17 @@
-"""Samples about a peak: their density is right however unevenly the data know the parameters."""
+"""Samples about peaks: their density is right however unevenly the data know the parameters."""
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
-from updating.diagnosis.search.evidence import _draw
 from updating.diagnosis.search.fit import Peak, Point
+from updating.diagnosis.search.sampling import about, effective, weighed
 from updating.likelihood.gaussian import Marginal
 
 
-def peak(normal: np.ndarray) -> Peak:
-    """A maximum in the middle of the unit cube with a given information matrix."""
-    middle = np.full(len(normal), 0.5)
+def peak(normal: np.ndarray, place: float = 0.5) -> Peak:
+    """A maximum with a given information matrix, in the middle of the unit cube or at some place of its diagonal."""
+    middle = np.full(len(normal), place)
     point = Point(middle, None, Marginal(0.0, 0.0, middle, 1, 1.0))  # type: ignore[arg-type]
     return Peak(point, normal, np.zeros(len(normal)))
 
@@ -19,7 +20,37 @@ def peak(normal: np.ndarray) -> Peak:
 @pytest.mark.parametrize("direction", [(1.0, 0.0, 0.0), (1.0, -2.0, 0.5), (0.3, 0.3, 0.3)])
 def test_densities_integrate_to_one(information: float, direction: tuple[float, ...]) -> None:
     """One combination of three parameters is known, by up to eleven digits, and nothing is of the others."""
-    samples, density = _draw([peak(information * np.outer(direction, direction))], 4096)
+    mixture = about([peak(information * np.outer(direction, direction))])
+    samples = mixture.draw(4096, seed=1)
+    density = np.logaddexp.reduce(mixture.log_parts(samples))
     assert np.isfinite(density).all()
     assert ((samples >= 0) & (samples <= 1)).all()
-    assert np.mean(np.exp(-density)) == pytest.approx(1.0, rel=0.05)
+    assert np.sum(np.exp(-density)) / 4096 == pytest.approx(1.0, rel=0.05)
+
+
+@pytest.mark.parametrize("k", [1, 2, 5])
+@pytest.mark.parametrize("off", [0.0, 1.5])
+def test_the_evidence_of_a_known_integral(k: int, off: float) -> None:
+    """The first proposal is off by some standard deviations and three times too narrow: the rounds mend it."""
+    sigma = 0.03
+    truth = multivariate_normal(np.full(k, 0.5), sigma**2 * np.eye(k))
+    start = about([peak(np.eye(k) * 9 / sigma**2, 0.5 + off * sigma)])
+    found = weighed(lambda u: np.atleast_1d(truth.logpdf(u)), start, min(32 * 2**k, 256))
+    assert effective(found.weights) > (100 if k < 5 else 20)
+    assert found.log_evidence == pytest.approx(0.0, abs=0.25)  # 2.5 standard deviations of 100 samples
+    mean = found.weights @ found.samples
+    np.testing.assert_allclose(mean, 0.5, atol=sigma * 0.35)
+    spread = np.sqrt(found.weights @ (found.samples - mean) ** 2)
+    np.testing.assert_allclose(spread, sigma, rtol=0.3)
+
+
+def test_two_maxima_of_which_one_was_missed() -> None:
+    """A second maximum, wide enough for samples of the prior to meet it, holds its half of the evidence."""
+    parts = [multivariate_normal(np.full(2, at), 0.04**2 * np.eye(2)) for at in (0.25, 0.75)]
+    found = weighed(
+        lambda u: np.logaddexp(parts[0].logpdf(u), parts[1].logpdf(u)) - np.log(2),
+        about([peak(np.eye(2) / 0.04**2, 0.25)]),
+        128,
+    )
+    assert found.log_evidence == pytest.approx(0.0, abs=0.25)
+    assert found.weights[found.samples[:, 0] > 0.5].sum() == pytest.approx(0.5, abs=0.12)

@@ -1,40 +1,29 @@
-"""Evidence of a candidate: the marginal likelihood integrated over the prior of its parameters.
-
-The integral is taken by importance sampling from a mixture: a widened t-distribution about every peak, cut
-off where the prior ends, and the prior itself. So it is right for a peak at the edge of the prior, for
-several peaks, and for a parameter the data do not see, where a Laplace approximation is not.
-"""
+"""Evidence of a candidate: the marginal likelihood integrated over the prior of its parameters."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
-from scipy.special import logsumexp
-from scipy.stats import qmc
-from scipy.stats import t as student
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.ridges import along_ridge
+from updating.diagnosis.search.sampling import Weighed, about, effective, weighed
 from updating.problem.candidate import Candidate
 from updating.problem.screening import basins
 from updating.thresholds import (
     AT_REST,
     CLIMBS,
     DRAFT_SAMPLES,
-    ENOUGH_SAMPLES,
     LEAST_ON_LINE,
-    MOST_SAMPLES,
+    MOST_AT_ONCE,
     PEAK_BEHIND,
-    PRIOR_SHARE,
     SAME_PEAK,
-    SAMPLE_FREEDOM,
-    SAMPLING_ROUNDS,
     STARTS_TRIED,
     STEPS_TRIED,
 )
@@ -83,6 +72,11 @@ class Explanation:
         """How well the best parameters fit: the p-value of chi-squared over all data and each channel [-]."""
         return p_value(self.best, self.samples.shape[1])
 
+    @property
+    def effective(self) -> float:
+        """As how many independent samples of the posterior the weighted ones tell; nothing of a draft [-]."""
+        return 0.0 if self.laplace_only else effective(self.weights)
+
     def restricted(self, candidate: Candidate, columns: IntArray) -> Explanation:
         """Return what it says of some of its effects alone, of those whose coordinates are ``columns``."""
         best = replace(self.best, coordinates=self.best.coordinates[columns])
@@ -110,7 +104,7 @@ def explain(
     starts : list of (k,) arrays, optional
         Prior quantiles to start from; left out, the effects' own.
     density : int
-        Samples: this many times two to the number of parameters, at most 512.
+        Samples at a time: this many times two to the number of parameters.
     laplace_only : bool
         Whether the samples are weighed by the parabolas through the peaks instead of by predictions: enough to
         tell the hopeless from the rest.
@@ -132,9 +126,8 @@ def explain(
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
     if laplace_only:
-        samples, proposal = _draw(peaks, DRAFT_SAMPLES)
-        log_weight = _parabolas(peaks, samples) - proposal
-        return _compared(candidate, peaks[0].point, samples, log_weight, peaks, laplace_only=True)
+        draft = weighed(partial(_parabolas, peaks), about(peaks), DRAFT_SAMPLES, most=DRAFT_SAMPLES)
+        return _explanation(candidate, peaks[0].point, draft, peaks, laplace_only=True)
     return _sampled(problem, candidate, peaks, density)
 
 
@@ -161,35 +154,30 @@ def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int 
 
 
 def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
-    count = min(density * 2 ** len(peaks[0].gradient), MOST_SAMPLES)
     peaks = [*peaks, *along_ridge(problem, candidate, peaks[0])]
-    for _ in range(SAMPLING_ROUNDS):
-        samples, proposal = _draw(peaks, count)
-        points = [evaluate(problem, candidate, u, near=peaks[0].point) for u in samples]
-        log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal
-        weights = np.exp(log_weight - logsumexp(log_weight))
-        if 1 / np.sum(weights**2) >= ENOUGH_SAMPLES:
-            break
-        peaks = [*peaks, _moments(problem, candidate, samples, weights)]
-        count = min(2 * count, MOST_SAMPLES)
-    best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
-    return _compared(candidate, best, samples, log_weight, peaks)
+    best = max((peak.point for peak in peaks), key=_height)
+
+    def log_likelihood(samples: FloatArray) -> FloatArray:
+        nonlocal best
+        heights = np.empty(len(samples))
+        for i, u in enumerate(samples):
+            point = evaluate(problem, candidate, u, near=peaks[0].point)
+            heights[i], best = _height(point), max(best, point, key=_height)
+        return heights
+
+    found = weighed(log_likelihood, about(peaks), min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE))
+    return _explanation(candidate, best, found, peaks)
 
 
-def _compared(
-    candidate: Candidate,
-    best: Point,
-    samples: FloatArray,
-    log_weight: FloatArray,
-    peaks: list[Peak],
-    *,
-    laplace_only: bool = False,
+def _height(point: Point) -> float:
+    return point.marginal.log_likelihood
+
+
+def _explanation(
+    candidate: Candidate, best: Point, found: Weighed, peaks: list[Peak], *, laplace_only: bool = False
 ) -> Explanation:
-    total = float(logsumexp(log_weight))
-    evidence = total - float(np.log(len(samples))) + candidate.log_weight
-    return Explanation(
-        candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), laplace_only
-    )
+    evidence = found.log_evidence + candidate.log_weight
+    return Explanation(candidate, evidence, best, found.samples, found.weights, tuple(peaks), laplace_only)
 
 
 def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
@@ -197,20 +185,10 @@ def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
     found = []
     for peak in peaks:
         away = samples - peak.point.coordinates
-        slope = _outward(peak)
+        slope = peak.outward
         curve = 0.5 * np.einsum("si,ij,sj->s", away, peak.normal, away)
         found.append(peak.point.marginal.log_likelihood + away @ slope - curve)
     return np.asarray(np.max(found, axis=0))
-
-
-def _moments(
-    problem: DiagnosisProblem, candidate: Candidate, samples: FloatArray, weights: FloatArray
-) -> Peak:
-    """Return a component about the mean of the weighted samples: where the first ones missed the bulk."""
-    best = highest(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
-    spread = samples - best.coordinates
-    covariance = (spread.T * weights) @ spread + 1e-6 * np.eye(samples.shape[1])
-    return Peak(best, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
 def _peaks(
@@ -257,58 +235,3 @@ def _distinct(points: Sequence[Point]) -> list[int]:
         if all(np.abs(here - points[j].coordinates).max() >= SAME_PEAK for j in kept):
             kept.append(i)
     return kept
-
-
-def _draw(peaks: list[Peak], count: int) -> tuple[FloatArray, FloatArray]:
-    """Return samples inside the unit cube and the logarithm of the density they were drawn with.
-
-    The density counts the samples that fell outside, whose likelihood is zero.
-    """
-    k = len(peaks[0].point.coordinates)
-    cube = qmc.Sobol(k, seed=1).random(count)
-    uniform = round(PRIOR_SHARE * count)
-    each = (count - uniform) // len(peaks)
-    factors = [_factor(peak) for peak in peaks]
-    drawn = [cube[:uniform]]
-    for i, (peak, lower) in enumerate(zip(peaks, factors, strict=True)):
-        part = cube[uniform + i * each : uniform + (i + 1) * each]
-        normal = student.ppf(np.clip(part, 1e-6, 1 - 1e-6), SAMPLE_FREEDOM)
-        drawn.append(peak.point.coordinates + normal @ lower.T)
-    samples = np.concatenate(drawn)
-    shares = [uniform / len(samples)] + [each / len(samples)] * len(peaks)
-    inside = np.all((samples >= 0) & (samples <= 1), axis=1)
-    parts = [np.full(int(inside.sum()), np.log(max(shares[0], 1e-12)))]
-    for peak, lower, share in zip(peaks, factors, shares[1:], strict=True):
-        parts.append(np.log(share) + _log_density(samples[inside], peak, lower))
-    density = logsumexp(np.stack(parts), axis=0) + np.log(len(samples) / inside.sum())
-    return samples[inside], np.asarray(density)
-
-
-def _log_density(samples: FloatArray, peak: Peak, lower: FloatArray) -> FloatArray:
-    """Return the density of independent t-variates taken through the factor ``lower`` (k, k)."""
-    standard = np.linalg.solve(lower, (samples - peak.point.coordinates).T)
-    return np.asarray(student.logpdf(standard, SAMPLE_FREEDOM).sum(axis=0) - np.log(np.diag(lower)).sum())
-
-
-def _factor(peak: Peak) -> FloatArray:
-    """Return the lower Cholesky factor of the covariance to draw with, (k, k) [-].
-
-    It is a little wider than the peak, no wider than its slope at an edge. A slope that is steep beside a parameter
-    which the data do not see leaves variances further apart than the digits of a number hold. So the factor comes from
-    a square root by QR (Golub and Van Loan 2013, Matrix Computations, section 5.2), and the covariance is never formed.
-    """
-    k = len(peak.gradient)
-    precision = peak.normal + np.diag(_outward(peak) ** 2) + 4.0 * np.eye(k)
-    values, vectors = np.linalg.eigh((precision + precision.T) / 2)
-    root = (vectors * np.sqrt(1.4 / np.maximum(values, 1.0))).T
-    upper = np.linalg.qr(root).R
-    return np.asarray(upper.T * np.where(np.diag(upper) < 0, -1.0, 1.0))
-
-
-def _outward(peak: Peak) -> FloatArray:
-    """Return the slope at an end of the range, as far as it leads out of it: one that leads in is of no maximum."""
-    u, slope = peak.point.coordinates, peak.gradient
-    return np.where(u <= 0, np.minimum(slope, 0.0), np.where(u >= 1, np.maximum(slope, 0.0), 0.0))
-
-
-__all__ = ["Explanation", "explain"]

@@ -77,6 +77,12 @@ class Peak:
     normal: FloatArray
     gradient: FloatArray
 
+    @property
+    def outward(self) -> FloatArray:
+        """The slope at an end of the range, as far as it leads out of it: one that leads in is of no maximum."""
+        u, slope = self.point.coordinates, self.gradient
+        return np.where(u <= 0, np.minimum(slope, 0.0), np.where(u >= 1, np.maximum(slope, 0.0), 0.0))
+
 
 def evaluate(
     problem: DiagnosisProblem,

@@ -1,0 +1,181 @@
+"""Samples of the posterior and the evidence, by population Monte Carlo.
+
+The proposals are a mixture: the prior itself, and a t-distribution about every maximum. So it is right for a maximum at
+an end of the prior, for several maxima, and for a parameter the data do not see, where a Laplace approximation is not.
+All samples of all rounds are weighed by the whole mixture that they were drawn from (Veach and Guibas 1995), and each
+round fits the mixture to them by a step of expectation and maximisation (Cappe, Douc, Guillin, Marin and Robert 2008,
+Statistics and Computing 18, 447-459). What samples of the prior hold of the weight becomes a component of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import qmc
+from scipy.stats import t as student
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.search.fit import Peak
+from updating.thresholds import ENOUGH_SAMPLES, MOST_SAMPLES, PRIOR_SHARE, SAMPLE_FREEDOM
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """Proposals in the unit cube of prior quantiles: the prior, and t-distributions.
+
+    Parameters
+    ----------
+    shares : (c,) array
+        Of the t-distributions; the rest is the prior's [-].
+    means : (c, k) array
+        Their middles [-].
+    factors : (c, k, k) array
+        Lower factors that independent t-variates are taken through [-].
+    """
+
+    shares: FloatArray
+    means: FloatArray
+    factors: FloatArray
+
+    def draw(self, count: int, *, seed: int) -> FloatArray:
+        """Return what of ``count`` samples is inside the cube, (m, k) [-]; outside of it the likelihood is nil."""
+        cube = qmc.Sobol(self.means.shape[1], seed=seed).random(count)
+        ends = np.round(count * np.cumsum(self.shares)).astype(int)
+        drawn = [cube[ends[-1] :]]
+        for part, mean, lower in zip(np.split(cube, ends)[:-1], self.means, self.factors, strict=True):
+            drawn.append(mean + student.ppf(np.clip(part, 1e-6, 1 - 1e-6), SAMPLE_FREEDOM) @ lower.T)
+        samples = np.concatenate(drawn)
+        return np.asarray(samples[np.all((samples >= 0) & (samples <= 1), axis=1)])
+
+    def log_parts(self, samples: FloatArray) -> FloatArray:
+        """Return the logarithm of each part's density at samples (m, k), the prior's first, (1 + c, m) [-]."""
+        parts = [np.full(len(samples), np.log1p(-self.shares.sum()))]
+        for share, mean, lower in zip(self.shares, self.means, self.factors, strict=True):
+            standard = np.linalg.solve(lower, (samples - mean).T)
+            size = np.log(np.abs(np.diag(lower))).sum()
+            parts.append(np.log(share) + student.logpdf(standard, SAMPLE_FREEDOM).sum(axis=0) - size)
+        return np.stack(parts)
+
+    def fitted(self, samples: FloatArray, weights: FloatArray) -> Mixture:
+        """Return the mixture after one step of expectation and maximisation, (m, k) samples with weights (m,) [-].
+
+        A component that few samples speak for stays nearly as wide as it was.
+        """
+        parts = self.log_parts(samples)
+        owned = weights * np.exp(parts - np.logaddexp.reduce(parts))
+        k = samples.shape[1]
+        before = [
+            np.cov(samples.T, aweights=owned[0] + 1e-300).reshape(k, k),
+            *(f @ f.T for f in self.factors),
+        ]
+        shares, means, factors = [], [], []
+        for own, old in zip(owned, before, strict=True):
+            share = float(own.sum())
+            if share < LEAST_SHARE:
+                continue
+            mean = own @ samples / share
+            away = samples - mean
+            number = share**2 / float(np.sum(own**2))
+            wide = (number * (away.T * own) @ away / share + (k + 1) * old) / (number + k + 1)
+            shares.append(share)
+            means.append(mean)
+            factors.append(np.linalg.cholesky(wide + SMALLEST_SPREAD**2 * np.eye(k)))
+        whole = np.array(shares) * (1 - PRIOR_SHARE) / sum(shares)
+        return Mixture(whole, np.array(means), np.array(factors))
+
+
+LEAST_SHARE = 0.01
+"""Least share of the weight that keeps a component in the mixture [-]."""
+
+SMALLEST_SPREAD = 1e-6
+"""Least standard deviation of a component [-]."""
+
+
+def about(peaks: list[Peak]) -> Mixture:
+    """Return the mixture of the prior and of each peak, as wide as its curvature, all peaks alike."""
+    shares = np.full(len(peaks), (1 - PRIOR_SHARE) / len(peaks))
+    means = np.array([peak.point.coordinates for peak in peaks])
+    return Mixture(shares, means, np.array([_factor(peak) for peak in peaks]))
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """Samples of the posterior.
+
+    Parameters
+    ----------
+    log_evidence : float
+        Logarithm of the mean likelihood over the prior [-].
+    samples : (m, k) array
+        Prior quantiles [-].
+    weights : (m,) array
+        Their weights, summing to 1 [-].
+    """
+
+    log_evidence: float
+    samples: FloatArray
+    weights: FloatArray
+
+
+def effective(weights: FloatArray) -> float:
+    """Return as how many independent samples the weighted ones tell (Kish 1965), weights (m,) summing to 1 [-]."""
+    return float(1 / np.sum(weights**2))
+
+
+def weighed(
+    log_likelihood: Callable[[FloatArray], FloatArray],
+    mixture: Mixture,
+    count: int,
+    *,
+    most: int = MOST_SAMPLES,
+) -> Weighed:
+    """Draw from a mixture and from what it is fitted to until enough samples carry the weight.
+
+    Parameters
+    ----------
+    log_likelihood : callable
+        Of samples (m, k), (m,) [-].
+    mixture : Mixture
+        What is drawn from first.
+    count : int
+        Samples drawn in each round.
+    most : int
+        Most samples in all rounds.
+    """
+    drawn: list[Mixture] = []
+    samples, height = np.zeros((0, mixture.means.shape[1])), np.zeros(0)
+    while True:
+        new = mixture.draw(count, seed=1 + len(drawn))
+        samples, height = np.concatenate([samples, new]), np.concatenate([height, log_likelihood(new)])
+        drawn.append(mixture)
+        density = np.logaddexp.reduce(np.concatenate([one.log_parts(samples) for one in drawn]))
+        log_weight = height - density - np.log(count)
+        total = float(np.logaddexp.reduce(log_weight))
+        found = Weighed(total, samples, np.exp(log_weight - total))
+        if effective(found.weights) >= ENOUGH_SAMPLES or (1 + len(drawn)) * count > most:
+            return found
+        mixture = mixture.fitted(samples, _flattened(found.weights, 2 * (1 + samples.shape[1])))
+
+
+def _flattened(weights: FloatArray, least: float) -> FloatArray:
+    """Return a power of the weights, the first among the halves of one by which as many samples carry it."""
+    while effective(weights) < least <= len(weights):
+        weights = np.sqrt(weights) / np.sum(np.sqrt(weights))
+    return weights
+
+
+def _factor(peak: Peak) -> FloatArray:
+    """Return the lower Cholesky factor of the covariance to draw with, (k, k) [-].
+
+    It is a little wider than the peak, no wider than its slope at an edge. A slope that is steep beside a parameter
+    which the data do not see leaves variances further apart than the digits of a number hold. So the factor comes from
+    a square root by QR (Golub and Van Loan 2013, Matrix Computations, section 5.2), and the covariance is never formed.
+    """
+    k = len(peak.gradient)
+    precision = peak.normal + np.diag(peak.outward**2) + 4.0 * np.eye(k)
+    values, vectors = np.linalg.eigh((precision + precision.T) / 2)
+    root = (vectors * np.sqrt(1.4 / np.maximum(values, 1.0))).T
+    upper = np.linalg.qr(root).R
+    return np.asarray(upper.T * np.where(np.diag(upper) < 0, -1.0, 1.0))
