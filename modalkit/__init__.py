@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from modalkit.workflow.diagnosis import diagnose_studies
     from modalkit.workflow.existing import Modes
     from modalkit.workflow.identification import Processed, read
+    from modalkit.workflow.localisation import localise_study
     from modalkit.workflow.processing_options import ProcessingOptions
     from modalkit.workflow.update import update_studies
     from updating import Case, Diagnosis, diagnose, register
@@ -102,6 +103,7 @@ __all__ = [
     "hits_table",
     "identify",
     "judge_hits",
+    "localise_study",
     "mac",
     "modes_of",
     "open_study",
@@ -132,6 +134,7 @@ load_on_demand(
         ".workflow.comparison": "compare mac modes_of",
         ".workflow.diagnosis": "diagnose_studies",
         ".workflow.existing": "Modes",
+        ".workflow.localisation": "localise_study",
         ".figures": "draw",
         ".workflow.update": "update_studies",
         ".workflow.processing_options": "ProcessingOptions",

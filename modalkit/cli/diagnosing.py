@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
+from acquisition.display import with_reasons
 from acquisition.quantities import percent
 from modalkit.cli.common import (
     check_folder,
@@ -31,7 +32,6 @@ from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
 from updating import Diagnosis
-from updating.effects import Obstacle
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -108,16 +108,8 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     if any(one.sets for one in diagnosis.searched):
         out.print(f"Searched: {searched_text(diagnosis)}", markup=False)
     if diagnosis.not_examined:
-        out.print("Not examined: " + _not_examined(diagnosis.not_examined), markup=False)
+        out.print("Not examined: " + with_reasons(diagnosis.not_examined), markup=False)
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
-
-
-def _not_examined(effects: dict[str, Obstacle]) -> str:
-    """Return the effects that could not be examined, gathered by the reason."""
-    by_reason: dict[str, list[str]] = {}
-    for name, why in effects.items():
-        by_reason.setdefault(str(why), []).append(name)
-    return "; ".join(f"{', '.join(names)} ({why})" for why, names in by_reason.items())
 
 
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:

@@ -70,6 +70,12 @@ ENTRIES = (
         "--json 1, --figures 1",
     ),
     Entry(
+        "localise",
+        "localising",
+        "Say which region of the model the test speaks against, by several methods side by side.",
+        "--method 1, --kind 1, --json 1, --figures 1",
+    ),
+    Entry(
         "tables",
         "compare",
         "Make the papers' tables through the whole chain, our value beside the published one.",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import expit, logsumexp
 
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Doubt
@@ -73,6 +73,13 @@ class RegionPosterior:
         return np.asarray(self.probability.sum(axis=0))
 
     @property
+    def beside_none(self) -> FloatArray:
+        """Probability of each region where no change is as likely before as a change of one, (n_regions,) [-]."""
+        with np.errstate(divide="ignore"):
+            changed = float(logsumexp(self.log_evidence + np.log(self.prior / len(self.kinds))))
+        return np.asarray(self.regions * expit(changed))
+
+    @property
     def by_kind(self) -> dict[str, float]:
         """Probability that stiffness, mass or damping of a region is wrong [-]."""
         return dict(zip(self.kinds, self.probability.sum(axis=1).tolist(), strict=True))
@@ -104,17 +111,26 @@ def compare_regions(problem: SpecimenProblem, kinds: tuple[Kind, ...] = KINDS) -
 class RegionEvidence(Localiser):
     """Probability of each region by the evidence of a change of it."""
 
-    name: ClassVar[str] = "evidence"
     summary: ClassVar[str] = (
         "Marginal likelihood of a change of one region, severity and nuisances integrated."
+    )
+    needs: ClassVar[str] = (
+        "Needs frequencies, shapes to separate mirrored regions, and tolerances as they are."
+    )
+    misleads: ClassVar[str] = (
+        "Misleads where more than one region is wrong, or a support, a fluid or the measurement: that is put into the "
+        "region that resembles it most."
     )
     source: ClassVar[str] = "Beck and Katafygiotis (1998), J. Eng. Mech. 124, applied region by region"
     kinds: ClassVar[tuple[Kind, ...]] = KINDS
     needs_shapes: ClassVar[bool] = False
 
     def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
-        """Return the probability of each region, given that one region is changed [-]."""
-        return compare_regions(problem, (kind,)).regions
+        """Return the probability that each region is changed, where one or none is, each as likely before [-].
+
+        What the probabilities lack to 1 is that of no change.
+        """
+        return compare_regions(problem, (kind,)).beside_none
 
 
 def _compare(

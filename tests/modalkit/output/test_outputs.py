@@ -35,6 +35,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "identify --json": ("identify", "study.toml"),
     "identify --report": ("identify", "study.toml"),
     "correlate --json": ("correlate", "study.toml"),
+    "localise --json": ("localise", "study.toml"),
     "tables --output": ("tables",),
     "update --json": ("update", "study.toml"),
     "update --report": ("update", "study.toml"),
