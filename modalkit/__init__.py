@@ -69,12 +69,13 @@ if TYPE_CHECKING:
     from modalkit.workflow.localisation import localise_study
     from modalkit.workflow.processing_options import ProcessingOptions
     from modalkit.workflow.update import update_studies
-    from updating import Case, Diagnosis, diagnose, register
+    from updating import Case, DecisionRules, Diagnosis, diagnose, register
     from updating.correlation.correlate import correlate
 
 
 __all__ = [
     "Case",
+    "DecisionRules",
     "Diagnosis",
     "FrfSet",
     "Geometry",
@@ -144,7 +145,7 @@ load_on_demand(
         ".samples": "sample_file",
         ".simulation.simulate": "simulate_test",
         ".study.read": "Study read_study",
-        "updating": "Case Diagnosis diagnose register",
+        "updating": "Case DecisionRules Diagnosis diagnose register",
         "updating.correlation.correlate": "correlate",
     },
 )

@@ -91,7 +91,7 @@ ENTRIES = (
         "diagnose",
         "diagnosing",
         "Say where the gap between test and model lies, what causes it, and how far it closes.",
-        "--shared 1, --without 1, --json 1, --report 1, --figures 1",
+        "--shared 1, --without 1, --rules 1, --json 1, --report 1, --figures 1",
     ),
     Entry(
         "effects",
