@@ -8,8 +8,8 @@ structures of this kind, with no measurement behind it: these are the first to b
 # --------------------------------------------------------------------------------- the noise of frequencies
 
 LEAST_FREQUENCY_NOISE = 1e-6
-"""No frequency is known better than this, relative [-]. From the digits of files that hold frequencies alone; it
-keeps a variance of zero out. Doubled: nothing, where a repeatability is stated."""
+"""No frequency is known better than this, relative [-]. From the digits of files that hold frequencies alone.
+Doubled: nothing, where a repeatability is stated."""
 
 STATED_MASS_DOUBT = 0.02
 """By how much a body weighs more or less than stated, relative (1 sigma) [-]. Judged: a data sheet's rounding, wax and
@@ -41,8 +41,7 @@ UNSTATED_DAMPING_NOISE = 0.05
 identification. Doubled: only where the tolerance on damping is as small does it matter."""
 
 LEAST_DAMPING = 1e-7
-"""No damping ratio is predicted lower: its logarithm is taken [-]. A thousand times below what any metal has.
-Doubled: nothing."""
+"""No damping ratio is predicted lower: its logarithm is taken [-]. A thousand times below what any metal has."""
 
 # -------------------------------------------------------------------------------- the noise of modal constants
 
@@ -85,8 +84,7 @@ DELAY_FIT_ERROR = 0.01
 function is a delay. Doubled: a delay explains constants that it spoils twice as much."""
 
 FREE_LEVEL_DOUBT = 3.0
-"""Doubt in the level of a mode of which the shape alone is known (1 sigma, relative) [-]. So wide that no level is
-believed. Doubled: nothing."""
+"""Doubt in the level of a mode of which the shape alone is known (1 sigma, relative) [-]: no level is believed."""
 
 SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
 """How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
@@ -105,8 +103,7 @@ SINGLE_SCATTER_PRIOR = (0.3, 0.25, 0.2, 0.15, 0.1)
 IDEALISATION_SHARES = (1.0, 0.3, 0.1)
 """Sizes of the doubt in an effect's idealisation, as shares of its ``fidelity``, each as likely [-]: that is what it
 may be off where the structure is none of those it was made for; on one of them it is off by next to nothing. Roots of
-ten, so that no size between is far from one. Doubled: the largest, and an effect is fitted with twice as much left
-over."""
+ten, so that no size between is far from one. Doubled: the largest, and an effect may leave twice as much."""
 
 END_REACH = 0.01
 """Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing
@@ -137,12 +134,10 @@ its place decides beyond that. Doubled: the phase of such a mode counts for even
 
 DRIFT_SHARE = 0.1
 """Drift of frequencies within a test, as a share of the scatter of re-mounting [-]. Judged: what re-mounts is the
-clamp, what drifts the temperature. Doubled: a joint must be twice as nonlinear to be seen in a test that scatters
-much."""
+clamp, what drifts the temperature. Doubled: in a test that scatters a joint must be twice as nonlinear to be seen."""
 
 LEAST_DRIFT = 3e-5
-"""That drift is at least this, relative [-]: what steel does in a quarter of a kelvin. Doubled: as above, in a good
-test."""
+"""That drift is at least this, relative [-]: of steel in a quarter of a kelvin. Doubled: as above, in a good test."""
 
 # ------------------------------------------------------------------------------- the course of a test over time
 
@@ -153,13 +148,11 @@ half of that. Doubled: a drift must be twice as large to be named."""
 
 TREND_SHARE = 1.0
 """That change over the scatter of re-mounting, beside the above [-]. Judged: two ends of a test differ by root 2 times
-what one state scatters, and half of its variance is of the mount, which stays. Doubled: as above, in a test that
-scatters much."""
+what one state scatters, and half of its variance is of the mount, which stays. Doubled: as above, where it is large."""
 
 BENT_COURSE = 0.15
 """How far a drift from first to last point may be from that of the line through all points, relative to it (1 sigma)
-[-]: what warms up by two to five time constants during a test does 6 to 26 % more. Doubled: rates are known half as
-well."""
+[-]: what warms up by two to five time constants during a test does 6 to 26 % more. Doubled: rates are half as sure."""
 
 # ------------------------------------------------------------------------------------------ priors, and what fits
 
@@ -188,8 +181,7 @@ tested beside its model mostly has one cause that stands out. Doubled for two: p
 
 OUTLIER_PRIOR = 0.005
 """Prior of each group of data (a kind of data of a mode, a measuring channel, a tolerance) to be worse than stated [-].
-Judged: of some forty groups that is one test in five with one. Doubled: a datum counts as odd from 3.9 in place of
-4.1 sigma."""
+Judged: of some forty groups that is one test in five with one. Doubled: a datum is odd from 3.9, not 4.1 sigma."""
 
 OUTLIER_SCALES = (3.0, 10.0, 30.0, 100.0)
 """How many times worse such a group may be [-], each as likely: from a stated sigma that is too small to a frequency
@@ -199,12 +191,10 @@ MOST_OUTLIERS = 3
 """So many groups at most are taken to be odd at once: with more of them a test says nothing."""
 
 MOST_ALONE = 1
-"""So many where there is no cause beside them, and shapes only: one odd shape is a slip, two are a gap, and so is a
-frequency."""
+"""So many where there is no cause beside them, shapes only: one odd shape is a slip, two or a frequency are a gap."""
 
 SUSPECTS_TRIED = 3
-"""How many groups, those that the rest predicts worst, are tried for each of them. Doubled: twice the time of this
-step, and the second is rarely taken."""
+"""How many groups, those that the rest predicts worst, are tried for each. Doubled: twice the time of this step."""
 
 QUANTILE_SPREAD = 0.3
 """Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
@@ -234,8 +224,7 @@ regions [-]. The contract lets their rows be left out. Doubled: nothing that is 
 
 DOUBT_BEYOND_NOISE = 3.0
 """Where the idealisation of the best single effect leaves a frequency in doubt by so many times its noise [-], pairs
-are sought beside it though it fits: nine tenths of the variance are its own. Doubled: a second cause of six sigma may
-hide in a sketch."""
+are sought beside it though it fits: nine tenths of the variance are its own. Doubled: six sigma may hide in it."""
 
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's
@@ -248,13 +237,11 @@ PAIRS_WEIGHED = 10
 """How many pairs are weighed, those that a score test finds the most promising. Doubled: twice the time of pairs."""
 
 PAIRS_ANEW = 3
-"""How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long
-again."""
+"""How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take 1.5 times as long."""
 
 FORMS_TRIED = 6
 """Of how many forms of a pair of effects on imported matrices, the best by either score test, a short climb chooses
-[-]: the true one was among the first three where two regions of six were changed. Doubled: pairs take half as long
-again."""
+[-]: the true one was among the first three where two regions of six were changed. Doubled: 1.5 times as long."""
 
 SHIFT_SPREAD = 3.0
 """How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
@@ -297,8 +284,7 @@ RIDGE_STEP = 0.2
 """How far apart places of a ridge are, in prior quantiles [-]. Doubled: a ridge that bends is lost sooner."""
 
 RIDGE_STEPS = 4
-"""How many places are taken either way: with the step, four fifths of the range. Doubled: twice the evaluations, some
-five per place."""
+"""How many places are taken either way: with the step, four fifths of the range. Doubled: twice the evaluations."""
 
 STARTS_TRIED = 12
 """From how many of the starting places at most a climb is tried..."""
@@ -311,8 +297,7 @@ CLIMBS = 3
 
 LEAST_ON_LINE = 0.05
 """Least share of each parameter in the direction of a line of starting places, for the search to begin at that line's
-maxima alone [-]: with less the line says nothing of the parameter. Doubled: fewer rows of starts count as a line, and
-are searched from all of them."""
+maxima alone [-]: with less the line says nothing of the parameter. Doubled: fewer rows of starts count as a line."""
 
 PRIOR_SHARE = 0.25
 """Share of the samples drawn from the prior itself [-]: no weight is more than four times the likelihood. Doubled: a
@@ -325,8 +310,7 @@ SAMPLING_ROUNDS = 2
 """How often the samples are drawn anew when too few of them carry the weight."""
 
 MOST_SAMPLES = 256
-"""Most samples drawn at a time, each a prediction. Doubled: evidence errs by 0.7 of what it did, at twice the
-time."""
+"""Most samples drawn at a time, each a prediction. Doubled: evidence errs by 0.7 of what it did, in twice the time."""
 
 DRAFT_SAMPLES = 512
 """Samples drawn for a draft, which cost no predictions."""
@@ -335,8 +319,7 @@ ENOUGH_SAMPLES = 10.0
 """Effective number of samples that is enough: evidence is off by a third, as the odds of one among three."""
 
 DIFFERENCE_STEP = 1e-3
-"""Step of the differences by which sensitivities are taken, in prior quantiles [-]: between round-off and
-curvature."""
+"""Step of differences for sensitivities, in prior quantiles [-]: between round-off and curvature."""
 
 SHORTEST_STEP = 1e-6
 """The shortest of them [-]: below it round-off of the modes is more than what they change by."""
@@ -356,15 +339,13 @@ PATIENT_STEPS = 6
 """After so many steps a climb is asked whether it still gets anywhere:"""
 
 LITTLE_GAIN = 0.002
-"""...a gain below this share of what is missing to the best found elsewhere ends a climb [-]: hundreds more would be
-needed."""
+"""...a gain below this share of what is missing to the best found elsewhere ends a climb [-]: it takes hundreds."""
 
 HOPELESS_BEHIND = 40.0
 """How far below the best found elsewhere, in log-likelihood, a maximum need not be known any better [-]."""
 
 AT_REST = 0.01
-"""A climb is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the error of the
-evidence."""
+"""A climb is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the error of evidence."""
 
 RELINEARISATIONS = 3
 """How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
@@ -376,8 +357,7 @@ FARTHEST_TOLERANCE = 6.0
 """Tolerances are followed so far from nominal [standard deviations]: nobody believes in more."""
 
 LARGEST_SENSITIVITY = 1e6
-"""A state whose nuisances move the data by more, per standard deviation, is no prediction [-]: an eigenvalue near
-zero."""
+"""A state whose nuisances move the data by more, per standard deviation, is none [-]: an eigenvalue near zero."""
 
 # ------------------------------------------------------------------------------- how far a gap closes, held out
 
@@ -392,8 +372,7 @@ SHORT_STEP = 0.02
 """Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
 
 UNSEEN_CURVATURE = 4.0
-"""Curvature that keeps parameters the data do not see where they are, per squared prior quantile [-]: a sigma of half
-the prior's range."""
+"""Curvature that keeps parameters the data do not see, per squared prior quantile [-]: a sigma of half the range."""
 
 HELD_OUT_FOLDS = 5
 """In so many parts the points are left out. Doubled: smaller parts, nearer neighbours, a gap that seems to close."""

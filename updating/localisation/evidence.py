@@ -27,14 +27,8 @@ from updating.problem.specimen import SpecimenProblem
 DOUBT = Doubt(fidelity=0.1)
 """A change is rarely even over just one region: how far that is off, relative to the shift it makes."""
 
-COARSE = 42
-"""Severities at which the likelihood is taken at first."""
-
 AGAIN = (-1.5, 0.0, 1.5)
 """Where about the peak the data are predicted anew [standard deviations]."""
-
-ENOUGH = 4
-"""A region whose data cannot be predicted at so many severities is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,14 +128,22 @@ class RegionEvidence(Localiser):
 
 
 def _compare(
-    problem: SpecimenProblem, plain: Comparison, state: Callable[[float], State], kind: Kind
+    problem: SpecimenProblem,
+    plain: Comparison,
+    state: Callable[[float], State],
+    kind: Kind,
+    *,
+    enough: int = 4,
 ) -> tuple[float, float]:
-    """Return log evidence and mean severity of one region's change."""
+    """Return log evidence and mean severity of one region's change.
+
+    A region whose data cannot be predicted at ``enough`` severities is left out.
+    """
     evaluations = {float(s): problem.compare(state(float(s)), doubt=DOUBT) for s in NODES[kind]}
     if kind != "damping":
         evaluations[0.0] = plain
     evaluations = {s: evaluation for s, evaluation in evaluations.items() if _finite(evaluation)}
-    if len(evaluations) < ENOUGH:
+    if len(evaluations) < enough:
         return -np.inf, 0.0
     start = _start(kind)
     grid, likely = refine(Between(evaluations).log_likelihoods, start)
@@ -155,11 +157,11 @@ def _compare(
     return float(logsumexp(score)), _moments(fine, score)[0]
 
 
-def _start(kind: Kind) -> FloatArray:
-    """Return severities at which the likelihood is taken at first, 0 among them where the prior changes there."""
+def _start(kind: Kind, *, count: int = 42) -> FloatArray:
+    """Return ``count`` severities at which the likelihood is taken at first, with 0 where the prior changes there."""
     low, high = NODES[kind][0], NODES[kind][-1]
-    sides = [np.linspace(low, high, COARSE)] if kind == "damping" else [
-        np.linspace(a, b, COARSE // 2) for a, b in ((low, 0.0), (0.0, high))
+    sides = [np.linspace(low, high, count)] if kind == "damping" else [
+        np.linspace(a, b, count // 2) for a, b in ((low, 0.0), (0.0, high))
     ]  # fmt: skip
     return np.unique(np.concatenate(sides))
 
