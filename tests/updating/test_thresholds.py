@@ -45,7 +45,9 @@ def test_no_number_that_limits_something_stands_elsewhere() -> None:
         for path in sorted((ROOT / room).rglob("*.py")):
             constants = named(ast.parse(path.read_text(encoding="utf-8")))
             own = {name for name, value in constants.items() if has_number(value)} - set(NO_THRESHOLDS)
-            assert not own, f"{path.relative_to(ROOT)}: {own} belongs into thresholds.py"
+            assert not own, (
+                f"{path.relative_to(ROOT)}: {own}: a rule, a default of its function, or a threshold"
+            )
 
 
 def test_each_rule_says_its_meaning_and_its_unit_and_is_read() -> None:

@@ -52,7 +52,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }
 """Every option that names a file to write, by a command that has it; folders are below."""
 FOLDERS = {"--figures", "--json-dir"}
-READ = {"layout", "file", "data", "check", "files", "other", "study", "studies", "folder"}
+READ = {"layout", "file", "data", "check", "files", "other", "rules", "study", "studies", "folder"}
 
 
 @pytest.fixture
