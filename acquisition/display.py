@@ -134,6 +134,19 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" + ("" if count == 1 else "s")
 
 
+def with_reasons(reasons: Mapping[str, object]) -> str:
+    """Return names with their reasons, those of one reason together: ``E, density (no shapes)``."""
+    return "; ".join(f"{', '.join(names)} ({why})" for why, names in grouped(reasons).items())
+
+
+def grouped(texts: Mapping[str, object]) -> dict[str, list[str]]:
+    """Return the names of each text, in the order in which the texts come first."""
+    names: dict[str, list[str]] = {}
+    for name, text in texts.items():
+        names.setdefault(str(text), []).append(name)
+    return names
+
+
 def named_files(paths: Sequence[object]) -> str:
     """Return the names of files for a line: all of a few, of many how many and the first and last."""
     names = [str(path) for path in paths]

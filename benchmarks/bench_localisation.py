@@ -132,23 +132,22 @@ def main() -> None:
         state = trial.changed(region, rng.uniform(*options.loss))
         problem = pose(trial.case(trial.measure(state, rng)))[0]
         problem.predictor.reduced, problem.nominal  # noqa: B018  what all methods share
-        for method in METHODS:
-            if not method.possible(problem, kind=options.kind):
+        for name, method in METHODS.items():
+            if method.obstacle(problem, kind=options.kind) is not None:
                 continue
             start = time.process_time()
             scores = method.scores(problem, kind=options.kind)
-            name = repr(method)
             seconds[name] = seconds.get(name, 0.0) + time.process_time() - start
             ranks.setdefault(name, []).append(int(np.sum(scores > scores[region])))
     what = f"{options.kind}, {100 * options.loss[0]:.0f} to {100 * options.loss[1]:.0f} %"
     print(f"{options.seeds} specimens, one of {len(spec.regions)} zones changed: {what}")
-    print(f"{'method':44} {'top-1':>7} {'95 % interval':>16} {'top-2':>7} {'ms':>7}")
+    print(f"{'method':16} {'top-1':>7} {'95 % interval':>16} {'top-2':>7} {'ms':>7}")
     for name, found in ranks.items():
         first, second = (sum(r <= n for r in found) for n in (0, 1))
         low, high = interval(first, len(found))
         share = f"{100 * first / len(found):5.1f} % [{low:5.1f}, {high:5.1f}] %"
         print(
-            f"{name:44} {share:>25} {100 * second / len(found):5.1f} % {1e3 * seconds[name] / len(found):7.1f}"
+            f"{name:16} {share:>25} {100 * second / len(found):5.1f} % {1e3 * seconds[name] / len(found):7.1f}"
         )
 
 

@@ -34,6 +34,8 @@ from threadpoolctl import threadpool_limits
 from modalkit.blind import DrawRanges, Outcome, Trial, check_store, draw_trial, write_trial
 from modalkit.blind.scoring.judge import is_right, label, sort_of
 from modalkit.workflow.case import open_study
+from updating.diagnosis.answer.rules import DEFAULT_RULES
+from updating.diagnosis.answer.verdict import rejected
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.goodness import p_values
@@ -43,7 +45,6 @@ from updating.effects import LIBRARY
 from updating.likelihood.comparison import CHANNELS
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import CLOSE_FITS
 
 GAINED = 2.0
 """By how much more log evidence the truth must have from the truth than from the search, before the search is blamed:
@@ -126,10 +127,11 @@ def _cause(found: Search, leader: Compared, true: Explanation) -> tuple[str, flo
         return "search", searched
     if leads:
         return "rejection", searched
-    if Compared(explanation=true, probability=0.0, p_value=true.p_value, as_stated=true.p_value).rejected:
+    row = Compared(explanation=true, probability=0.0, p_value=true.p_value, as_stated=true.p_value)
+    if rejected(row, DEFAULT_RULES):
         return "sketch", searched
     behind = leader.explanation.best.marginal.log_likelihood - true.best.marginal.log_likelihood
-    return ("prior" if 2 * behind < CLOSE_FITS else "information"), searched
+    return ("prior" if 2 * behind < DEFAULT_RULES.close_fits else "information"), searched
 
 
 def _score(explanation: Explanation) -> float:

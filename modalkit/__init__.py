@@ -66,14 +66,16 @@ if TYPE_CHECKING:
     from modalkit.workflow.diagnosis import diagnose_studies
     from modalkit.workflow.existing import Modes
     from modalkit.workflow.identification import Processed, read
+    from modalkit.workflow.localisation import localise_study
     from modalkit.workflow.processing_options import ProcessingOptions
     from modalkit.workflow.update import update_studies
-    from updating import Case, Diagnosis, diagnose, register
+    from updating import Case, DecisionRules, Diagnosis, diagnose, register
     from updating.correlation.correlate import correlate
 
 
 __all__ = [
     "Case",
+    "DecisionRules",
     "Diagnosis",
     "FrfSet",
     "Geometry",
@@ -102,6 +104,7 @@ __all__ = [
     "hits_table",
     "identify",
     "judge_hits",
+    "localise_study",
     "mac",
     "modes_of",
     "open_study",
@@ -132,6 +135,7 @@ load_on_demand(
         ".workflow.comparison": "compare mac modes_of",
         ".workflow.diagnosis": "diagnose_studies",
         ".workflow.existing": "Modes",
+        ".workflow.localisation": "localise_study",
         ".figures": "draw",
         ".workflow.update": "update_studies",
         ".workflow.processing_options": "ProcessingOptions",
@@ -141,7 +145,7 @@ load_on_demand(
         ".samples": "sample_file",
         ".simulation.simulate": "simulate_test",
         ".study.read": "Study read_study",
-        "updating": "Case Diagnosis diagnose register",
+        "updating": "Case DecisionRules Diagnosis diagnose register",
         "updating.correlation.correlate": "correlate",
     },
 )

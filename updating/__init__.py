@@ -7,6 +7,7 @@ from acquisition.lazy import load_on_demand
 if TYPE_CHECKING:
     from updating.case import Case
     from updating.diagnosis.answer.result import Diagnosis
+    from updating.diagnosis.answer.rules import DecisionRules
     from updating.diagnosis.diagnose import diagnose, diagnose_together
     from updating.effects import LIBRARY, Effect, Parameter, register
     from updating.environment import Environment
@@ -23,6 +24,7 @@ __all__ = [
     "Axes",
     "Case",
     "Damping",
+    "DecisionRules",
     "Diagnosis",
     "Effect",
     "Environment",
@@ -51,6 +53,7 @@ load_on_demand(
         ".case": "Case",
         ".diagnosis.diagnose": "diagnose diagnose_together",
         ".diagnosis.answer.result": "Diagnosis",
+        ".diagnosis.answer.rules": "DecisionRules",
         ".effects": "LIBRARY Effect Parameter register",
         ".environment": "Environment",
         ".test_data.measured": "Measured",

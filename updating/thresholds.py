@@ -1,5 +1,6 @@
-"""All numbers that a diagnosis decides by: what each limits, where it comes from, what doubling it does.
+"""Numbers of the noise and of the search of a diagnosis: what each limits, where it comes from, what doubling it does.
 
+What a verdict is decided by is in :mod:`updating.diagnosis.answer.rules`; a number of one algorithm stands beside it.
 Where doubling is said, it follows from the formula that the number stands in. *Judged* means chosen by a modeller for
 structures of this kind, with no measurement behind it: these are the first to be replaced once one is there.
 """
@@ -7,12 +8,8 @@ structures of this kind, with no measurement behind it: these are the first to b
 # --------------------------------------------------------------------------------- the noise of frequencies
 
 LEAST_FREQUENCY_NOISE = 1e-6
-"""No frequency is known better than this, relative [-]. From the digits of files that hold frequencies alone; it
-keeps a variance of zero out. Doubled: nothing, where a repeatability is stated."""
-
-MESH_UNEVENNESS = 0.5
-"""How much of the mesh's own error is in doubt mode by mode, beside all of it in common [-]. Judged. Doubled: on a
-coarse mesh modes of short waves count a quarter as much once this is their whole noise."""
+"""No frequency is known better than this, relative [-]. From the digits of files that hold frequencies alone.
+Doubled: nothing, where a repeatability is stated."""
 
 STATED_MASS_DOUBT = 0.02
 """By how much a body weighs more or less than stated, relative (1 sigma) [-]. Judged: a data sheet's rounding, wax and
@@ -21,11 +18,6 @@ the cable's end. Doubled: a change of a sensor's mass must be twice as large to 
 UNREACHED_MODE_DOUBT = 0.01
 """Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others, relative [-].
 Judged: what tolerances of one per cent leave. Doubled: such a mode counts a quarter as much."""
-
-WIDE_TOLERANCE = 0.04
-"""From this relative tolerance on, effects of tolerances are linearised anew about the most probable ones [-]. Half
-its square is the error of a linearisation in ln f, as large as its usual noise. Doubled: that error is four times as
-large."""
 
 # ---------------------------------------------------------------------------------------- the noise of damping
 
@@ -49,8 +41,7 @@ UNSTATED_DAMPING_NOISE = 0.05
 identification. Doubled: only where the tolerance on damping is as small does it matter."""
 
 LEAST_DAMPING = 1e-7
-"""No damping ratio is predicted lower: its logarithm is taken [-]. A thousand times below what any metal has.
-Doubled: nothing."""
+"""No damping ratio is predicted lower: its logarithm is taken [-]. A thousand times below what any metal has."""
 
 # -------------------------------------------------------------------------------- the noise of modal constants
 
@@ -93,8 +84,7 @@ DELAY_FIT_ERROR = 0.01
 function is a delay. Doubled: a delay explains constants that it spoils twice as much."""
 
 FREE_LEVEL_DOUBT = 3.0
-"""Doubt in the level of a mode of which the shape alone is known (1 sigma, relative) [-]. So wide that no level is
-believed. Doubled: nothing."""
+"""Doubt in the level of a mode of which the shape alone is known (1 sigma, relative) [-]: no level is believed."""
 
 SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
 """How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
@@ -109,8 +99,7 @@ SINGLE_SCATTER_PRIOR = (0.3, 0.25, 0.2, 0.15, 0.1)
 IDEALISATION_SHARES = (1.0, 0.3, 0.1)
 """Sizes of the doubt in an effect's idealisation, as shares of its ``fidelity``, each as likely [-]: that is what it
 may be off where the structure is none of those it was made for; on one of them it is off by next to nothing. Roots of
-ten, so that no size between is far from one. Doubled: the largest, and an effect is fitted with twice as much left
-over."""
+ten, so that no size between is far from one. Doubled: the largest, and an effect may leave twice as much."""
 
 END_REACH = 0.01
 """Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing
@@ -141,12 +130,10 @@ its place decides beyond that. Doubled: the phase of such a mode counts for even
 
 DRIFT_SHARE = 0.1
 """Drift of frequencies within a test, as a share of the scatter of re-mounting [-]. Judged: what re-mounts is the
-clamp, what drifts the temperature. Doubled: a joint must be twice as nonlinear to be seen in a test that scatters
-much."""
+clamp, what drifts the temperature. Doubled: in a test that scatters a joint must be twice as nonlinear to be seen."""
 
 LEAST_DRIFT = 3e-5
-"""That drift is at least this, relative [-]: what steel does in a quarter of a kelvin. Doubled: as above, in a good
-test."""
+"""That drift is at least this, relative [-]: of steel in a quarter of a kelvin. Doubled: as above, in a good test."""
 
 # ------------------------------------------------------------------------------- the course of a test over time
 
@@ -157,76 +144,19 @@ half of that. Doubled: a drift must be twice as large to be named."""
 
 TREND_SHARE = 1.0
 """That change over the scatter of re-mounting, beside the above [-]. Judged: two ends of a test differ by root 2 times
-what one state scatters, and half of its variance is of the mount, which stays. Doubled: as above, in a test that
-scatters much."""
+what one state scatters, and half of its variance is of the mount, which stays. Doubled: as above, where it is large."""
 
 BENT_COURSE = 0.15
 """How far a drift from first to last point may be from that of the line through all points, relative to it (1 sigma)
-[-]: what warms up by two to five time constants during a test does 6 to 26 % more. Doubled: rates are known half as
-well."""
+[-]: what warms up by two to five time constants during a test does 6 to 26 % more. Doubled: rates are half as sure."""
 
-LARGEST_TREND = 0.04
-"""Largest drift that is looked for, relative [-]: identification believes shifts of 2 % to either side of the middle;
-plastics, ten times as soft to temperature as metals, reach it in some 15 K. Doubled: faint drifts need a little more
-evidence."""
-
-# ---------------------------------------------------------------------------------------- gates and warnings
-
-FEWEST_DATA = 6
-"""With fewer data beyond the parameters of the first set of causes a warning says so: what is left of five scatters by
-a third, so that it says little of the noise. Doubled: most tests of a few frequencies get the warning."""
-
-FEWEST_MODES = 3
-"""With fewer modes paired a warning says that little can be told apart: an effect and the tolerances are as many."""
-
-SKIPPED_MODE_GAIN = 4.0
-"""By how much leaving one out must lower the scatter of the frequency ratios before a mode is held to be missing [-].
-Judged. Doubled: fewer warnings, of test and model paired by rank."""
-
-UNLIKE_RATIOS = 0.02
-"""Scatter of the frequency ratios, relative, below which nothing is suspected [-]: what most effects make."""
-
-LONE_ERROR = 0.08
-"""A frequency so far from what the others' median error says [-]..."""
-
-LONE_DEVIATIONS = 6.0
-"""...and so many times the median deviation of the others stands alone [-]. Judged: few effects move one mode only,
-and none by that much. Doubled: only mistaken modes are still pointed out."""
-
-FEWEST_FOR_A_LONE = 4
-"""With fewer modes none can be said to stand alone: half of them would be."""
-
-ANOTHER_STRUCTURE = 0.5
-"""R.m.s. error of the frequencies from which test and model are hardly the same structure [-]: a stiffness off by a
-factor of two and more. Doubled: the warning comes for models in wrong units only."""
-
-THIN_FLUID = 10.0
-"""A fluid of less density is a gas: there is no drier test [kg/m^3]. Air has 1.2, light oils 700."""
-
-# --------------------------------------------------------------------------------------- is there a gap, and what
-
-SIGNIFICANT_GAP = 0.005
-"""Tolerances and noise explain data that chance alone makes more often than this [-]. One false alarm in 200 tests.
-Doubled: one in 100."""
-
-FAR_BETTER = 6.0
-"""Logarithm of the Bayes factor at which an effect shows a gap that no single test does [-]: odds of 400, which beats
-the prior of one effect among two dozen seventeen to one. Doubled: such gaps count only by their chance."""
-
-CHANCE_OF_A_FIT = 1e-3
-"""Chance, over all that was tried, that an effect fits noise that much better, below which there is a gap [-].
-Doubled: twice as many false alarms, one in 500."""
-
-PLACES_PER_FORM = 2
-"""Places tried for each form of an effect, roughly: what that chance is multiplied by, beside the form's share [-].
-Doubled: an effect must fit noise by ln 2 better."""
+# ------------------------------------------------------------------------------------------ priors, and what fits
 
 REJECTED_FIT = 0.003
-"""A single effect that fits worse than this is no answer [-]. One true cause in 300 is rejected if the noise is as
-stated."""
+"""For the search, and the default of the rule ``rejected_fit`` [-]."""
 
 DOUBTED_FIT = 0.02
-"""Pairs must fit as well as this [-]: more freedom fits better. Doubled: one true pair in 25 is rejected."""
+"""For the search, and the default of the rule ``doubted_fit`` [-]."""
 
 WELL_FITTED = 0.1
 """Where no single effect fits better than this the most promising pairs are weighed beside them, whatever they promise
@@ -241,45 +171,13 @@ PROBABLE_BEHIND = 6.0
 """Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:
 they hold less than 0.3 % of its probability."""
 
-NOTABLE_REMAINDER = 3.0
-"""R.m.s. residual of a kind of data of a mode, or of a measuring channel, from which on it is said to carry what an
-explanation leaves [standard deviations]. Doubled: only the plainest is pointed out."""
-
-CREDIBLE_SHARE = 0.95
-"""Probability that the sets of an answer hold together [-]. The contract's."""
-
-TWO_SIDED = 1.96
-"""Standard deviations to either side that hold 95 % of a normal distribution [-]: of a place that a form fixes. The
-contract's interval."""
-
-RIVAL_SHARE = 0.02
-"""A rival that fits as well as the first is kept from this share of its probability on [-]. Below, its prior alone,
-by how wide its parameters range, is odds of 50. Doubled: odds of 25 name an effect among equals."""
-
-DETERMINED_SPREAD = 0.1
-"""Standard deviation of a prior quantile below which the data determine a parameter [-]: a third of the prior's own,
-0.29. Doubled: a parameter counts as determined that the data halve."""
-
-USUAL_SHARE = 0.99
-"""A rival that has hardly any probability is kept only with its sizes in so much of their priors, about the middle
-[-]: the contract's rule. Doubling what is left out drops rivals in the outer two per cent."""
-
-SPLIT_SIGMA = 3.0
-"""A cause whose size in one half of the data is further from that in the other names nothing [standard deviations]: by
-chance 1 in 400 for each of its parameters. Doubled: only a cause that is wrong by far is found out."""
-
-CLOSE_FITS = 4.0
-"""Twice the difference of log-likelihood below which two explanations are equivalent [-]: 2 sigma, as the contract
-has it."""
-
 COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04, 0.01)
 """Prior of so many causes at once, none first, each spread evenly over the sets of that number [-]. Judged: what is
 tested beside its model mostly has one cause that stands out. Doubled for two: pairs gain ln 2 in all odds."""
 
 OUTLIER_PRIOR = 0.005
 """Prior of each group of data (a kind of data of a mode, a measuring channel, a tolerance) to be worse than stated [-].
-Judged: of some forty groups that is one test in five with one. Doubled: a datum counts as odd from 3.9 in place of
-4.1 sigma."""
+Judged: of some forty groups that is one test in five with one. Doubled: a datum is odd from 3.9, not 4.1 sigma."""
 
 OUTLIER_SCALES = (3.0, 10.0, 30.0, 100.0)
 """How many times worse such a group may be [-], each as likely: from a stated sigma that is too small to a frequency
@@ -289,12 +187,10 @@ MOST_OUTLIERS = 3
 """So many groups at most are taken to be odd at once: with more of them a test says nothing."""
 
 MOST_ALONE = 1
-"""So many where there is no cause beside them, and shapes only: one odd shape is a slip, two are a gap, and so is a
-frequency."""
+"""So many where there is no cause beside them, shapes only: one odd shape is a slip, two or a frequency are a gap."""
 
 SUSPECTS_TRIED = 3
-"""How many groups, those that the rest predicts worst, are tried for each of them. Doubled: twice the time of this
-step, and the second is rarely taken."""
+"""How many groups, those that the rest predicts worst, are tried for each. Doubled: twice the time of this step."""
 
 QUANTILE_SPREAD = 0.3
 """Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
@@ -303,16 +199,8 @@ SET_MARGIN = 2.0
 """A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
 or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
 
-CLOSES_NEARLY_ALL = 90.0
-"""A cause that leaves more than noise is named where it closes so much of what can be closed, on modes held out [%].
-Doubling what is left out of it, to 80, names a part of the cause as if it were nearly all."""
-
-LIKELY_ALL_THE_SAME = 0.8
-"""From this probability on that there is some cause, the summary says which, though chance might make the gap [-].
-Doubled: never."""
-
-BEYOND_NOTHING = 3.0
-"""By how much the log evidence of an answer exceeds that of no effect at all [-]: odds of 20."""
+LEAST_PLACE = 0.05
+"""For the search, and the default of the rule ``least_place`` [-]."""
 
 FORM_SHARE = 0.02
 """Forms of an effect with less than this share of the most probable one do not speak for its fit [-]: they are
@@ -330,30 +218,9 @@ regions [-]. The contract lets their rows be left out. Doubled: nothing that is 
 
 # --------------------------------------------------------------------------------- how the search is carried out
 
-THEORY_BEYOND_NOISE = 0.3
-"""A fuller theory is weighed beside the model's own where it moves a frequency, or the constants of a mode on average,
-by more than this part of the noise [-]: less adds a tenth to the variance. Doubled: a bias of half a sigma goes
-unseen."""
-
-SOFTER_IN_SHEAR = 0.6
-"""Shear coefficient over a rectangle's, of a section of which area and second moment alone are stated, one standard
-deviation below it [-]: a thin tube. Halved, an I: the doubt doubles."""
-
-STRIP_ALONG = 40
-"""Most elements along the plate that says what a theory of beams leaves out [-]: a clamp's hold on the section is
-resolved for beams wider than a thirtieth of their length. Doubled: twice the work for a remark."""
-
-STRIP_ACROSS = 4
-"""Elements across that plate [-]: frequencies are good to a thousandth of the shift. Doubled: four times the work."""
-
-TWIST_ALONE = 0.1
-"""Modes of that plate that move the middle line by less than this share of what the liveliest does are twist [-].
-Doubled: a bending mode that the line's ends alone see may be missed."""
-
 DOUBT_BEYOND_NOISE = 3.0
 """Where the idealisation of the best single effect leaves a frequency in doubt by so many times its noise [-], pairs
-are sought beside it though it fits: nine tenths of the variance are its own. Doubled: a second cause of six sigma may
-hide in a sketch."""
+are sought beside it though it fits: nine tenths of the variance are its own. Doubled: six sigma may hide in it."""
 
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's
@@ -366,13 +233,11 @@ PAIRS_WEIGHED = 10
 """How many pairs are weighed, those that a score test finds the most promising. Doubled: twice the time of pairs."""
 
 PAIRS_ANEW = 3
-"""How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long
-again."""
+"""How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take 1.5 times as long."""
 
 FORMS_TRIED = 6
 """Of how many forms of a pair of effects on imported matrices, the best by either score test, a short climb chooses
-[-]: the true one was among the first three where two regions of six were changed. Doubled: pairs take half as long
-again."""
+[-]: the true one was among the first three where two regions of six were changed. Doubled: 1.5 times as long."""
 
 SHIFT_SPREAD = 3.0
 """How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
@@ -415,8 +280,7 @@ RIDGE_STEP = 0.2
 """How far apart places of a ridge are, in prior quantiles [-]. Doubled: a ridge that bends is lost sooner."""
 
 RIDGE_STEPS = 4
-"""How many places are taken either way: with the step, four fifths of the range. Doubled: twice the evaluations, some
-five per place."""
+"""How many places are taken either way: with the step, four fifths of the range. Doubled: twice the evaluations."""
 
 STARTS_TRIED = 12
 """From how many of the starting places at most a climb is tried..."""
@@ -429,8 +293,7 @@ CLIMBS = 3
 
 LEAST_ON_LINE = 0.05
 """Least share of each parameter in the direction of a line of starting places, for the search to begin at that line's
-maxima alone [-]: with less the line says nothing of the parameter. Doubled: fewer rows of starts count as a line, and
-are searched from all of them."""
+maxima alone [-]: with less the line says nothing of the parameter. Doubled: fewer rows of starts count as a line."""
 
 PRIOR_SHARE = 0.25
 """Share of the samples drawn from the prior itself [-]: no weight is more than four times the likelihood. Doubled: a
@@ -451,8 +314,7 @@ ENOUGH_SAMPLES = 100.0
 deviation."""
 
 DIFFERENCE_STEP = 1e-3
-"""Step of the differences by which sensitivities are taken, in prior quantiles [-]: between round-off and
-curvature."""
+"""Step of differences for sensitivities, in prior quantiles [-]: between round-off and curvature."""
 
 SHORTEST_STEP = 1e-6
 """The shortest of them [-]: below it round-off of the modes is more than what they change by."""
@@ -472,15 +334,13 @@ PATIENT_STEPS = 6
 """After so many steps a climb is asked whether it still gets anywhere:"""
 
 LITTLE_GAIN = 0.002
-"""...a gain below this share of what is missing to the best found elsewhere ends a climb [-]: hundreds more would be
-needed."""
+"""...a gain below this share of what is missing to the best found elsewhere ends a climb [-]: it takes hundreds."""
 
 HOPELESS_BEHIND = 40.0
 """How far below the best found elsewhere, in log-likelihood, a maximum need not be known any better [-]."""
 
 AT_REST = 0.01
-"""A climb is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the error of the
-evidence."""
+"""A climb is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the error of evidence."""
 
 RELINEARISATIONS = 3
 """How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
@@ -488,16 +348,11 @@ RELINEARISATIONS = 3
 STRAINED_LINEARISATION = 0.01
 """Relative change of a tolerance's property that a linearisation bears [-]: its square is below the noise."""
 
-BENT_DATA = 1.0
-"""How far all data together may leave their linearisation, in standard deviations of their noise [-]: what changes
-chi-squared by about one. Doubled: shapes of modes that are close err by as much as one in twenty tests by chance."""
-
 FARTHEST_TOLERANCE = 6.0
 """Tolerances are followed so far from nominal [standard deviations]: nobody believes in more."""
 
 LARGEST_SENSITIVITY = 1e6
-"""A state whose nuisances move the data by more, per standard deviation, is no prediction [-]: an eigenvalue near
-zero."""
+"""A state whose nuisances move the data by more, per standard deviation, is none [-]: an eigenvalue near zero."""
 
 # ------------------------------------------------------------------------------- how far a gap closes, held out
 
@@ -512,119 +367,7 @@ SHORT_STEP = 0.02
 """Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
 
 UNSEEN_CURVATURE = 4.0
-"""Curvature that keeps parameters the data do not see where they are, per squared prior quantile [-]: a sigma of half
-the prior's range."""
+"""Curvature that keeps parameters the data do not see, per squared prior quantile [-]: a sigma of half the range."""
 
 HELD_OUT_FOLDS = 5
 """In so many parts the points are left out. Doubled: smaller parts, nearer neighbours, a gap that seems to close."""
-
-SECOND_METRIC = 0.5
-"""A second kind of data carries the gap, too, if the logarithm of its probability is this share of the first's [-].
-Judged. Doubled: it would have to be as improbable as the first."""
-
-CLOSABLE_GAP = 1.5
-"""A gap within this many times the floor has nothing to close [-]. The contract's."""
-
-BOOTSTRAP_DRAWS = 400
-"""Draws of the bootstrap of what is closed: ten beyond each end of the interval. Doubled: its ends scatter by 0.7 of
-what they did."""
-
-# ------------------------------------------------------------------------------------------- where the cause is
-
-NOTABLE_MODE = 3.0
-"""From so many standard deviations on a mode carries some of the gap [-]: of twenty modes one in eighteen tests has
-one by chance. Doubled: only plain ones are pointed out."""
-
-CONCERNED_REACH = 0.05
-"""A test point within this share of the span of a place is concerned [-]. Judged: the spacing of a fine grid."""
-
-TOGETHER_SHARE = 0.02
-"""Channels whose probabilities differ by less act together, halves of one pair, which differ by what other
-explanations add to either [-]. Doubled: two rival explanations pass for a pair more easily."""
-
-SEPARATE_PLACES = 0.05
-"""Samples further from each other than this share of the span belong to different places [-]. Doubled: two spots a
-tenth of the length apart are one."""
-
-LEAST_PLACE = 0.05
-"""A place with less of the weight is not named [-]: the answer's 95 % stand without it."""
-
-HEAVIEST_SAMPLES = 300
-"""So many of the heaviest samples are looked at for places and intervals: 7 beyond each end of 95 %..."""
-
-FEWER_SAMPLES = 40
-"""...and so many where the explanation is negligible: one beyond each end."""
-
-LIGHTEST_SAMPLE = 1e-4
-"""Samples with less than this share of the heaviest one's weight are not looked at [-]..."""
-
-BRIDGE_SAMPLE = 1e-3
-"""...and with less than this they build no bridges between places [-]. Doubled: places split a little more
-readily."""
-
-# ------------------------------------------------------------------------------------------ what to measure next
-
-SEPARATED_SIGMA = 3.0
-"""Explanations so many sigma apart are separated by a test [-]: the wrong one is rejected 998 times in 1000."""
-
-WORTHWHILE_SIGMA = 1.0
-"""A test that separates nothing by so many sigma is not worth a line [-]."""
-
-RIVALS_COMPARED = 4
-"""So many explanations are told apart: six pairs of them, each predicted under every test."""
-
-TESTS_PROPOSED = 6
-"""So many tests are proposed: what a reader takes in."""
-
-KNOWN_MASS = 0.05
-"""Mass to add, relative to the structure's [-]: moves modes by some per cent, as an effect does, and bends nothing
-else. Doubled: twice the shift, and a model of the mass that begins to matter."""
-
-LEVEL_SPAN_GAIN = 4.0
-"""How many times better a dependence on the force is known once hits span levels of 1 : 5 [-]."""
-
-BALANCE_SIGMA = 0.001
-"""What weighing reaches: relative 1 sigma, the specimen's other dimensions known as well [-]."""
-
-CALIPER_SIGMA = 0.002
-"""What a micrometer reaches on thickness and width: relative 1 sigma of the mean of some places [-]."""
-
-SENSOR_BALANCE_SIGMA = 1e-4
-"""What weighing a sensor with its mount reaches: 1 sigma [kg]."""
-
-CALIBRATION_SIGMA = 0.005
-"""What a calibration of the chain with a known free mass reaches: relative 1 sigma [-]."""
-
-DELAY_SIGMA = 5e-6
-"""What the same test says of a delay between the channels: 1 sigma [s]."""
-
-WINDOW_SIGMA = 0.05
-"""What the analyser's settings leave in doubt of a window's decay rate: 1 sigma [1/s]."""
-
-UNKNOWN_SHAPE_NOISE = 0.01
-"""Noise of a modal constant where nothing is known of it, relative to its mode's r.m.s. [-]: of a careful test."""
-
-FURTHER_POINT = 0.04
-"""Further points are at least this share of the span away from those there are [-]: nearer ones say the same."""
-
-PLACES_FOR_A_MASS = 4
-"""So many places are tried for a known mass."""
-
-GRID_ALONG = (0.2, 0.4, 0.6, 0.8, 1.0)
-"""Where further points are tried along the structure, as shares of the side [-]..."""
-
-GRID_ACROSS = (0.05, 0.5, 0.95)
-"""...and across it: both edges and the middle, where torsion shows and does not [-]."""
-
-POINT_THAT_MISSES = 1.7
-"""Points whose misfit is so many times the r.m.s. over all are named [-]: three times its square."""
-
-POINTS_NAMED = 3
-"""So many of them at most are named."""
-
-FEWEST_POINTS = 4
-"""With fewer points more of them are asked for: shapes of a few points are alike."""
-
-COMPARISONS_KEPT = 32
-"""How many comparisons of several specimens are kept: those about one point of a candidate, whose parameters are moved
-one at a time; more are hardly asked for again, and each is up to a megabyte [-]."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import dataclasses
 import importlib
 import inspect
 import re
@@ -178,8 +179,22 @@ def documents() -> str:
     return "\n".join(out)
 
 
+def rules() -> str:
+    """Return what a verdict is decided by, from the docstring of the record that holds it."""
+    from updating import DecisionRules
+
+    text = inspect.getdoc(DecisionRules) or ""
+    defaults = {one.name: one.default for one in dataclasses.fields(DecisionRules)}
+    listed = text.partition("Parameters\n----------\n")[2].partition("\nRaises\n")[0]
+    meanings = re.findall(r"^(\w+) : float\n((?:    .*\n)+)", listed, flags=re.MULTILINE)
+    rows = [(f"`{name}`", f"`{defaults[name]:g}`", inspect.cleandoc(meaning)) for name, meaning in meanings]
+    return (
+        _table(("rule", "default", "what it limits, where it comes from, what doubling it does"), rows) + "\n"
+    )
+
+
 def thresholds() -> str:
-    """Return all numbers that the diagnosis decides by, with the reasons that stand beside them."""
+    """Return the numbers of the noise and of the search, with the reasons that stand beside them."""
     module = importlib.import_module("updating.thresholds")
     source = inspect.getsource(module)
     out: list[str] = []
@@ -255,6 +270,7 @@ MAKERS: dict[str, Callable[[], str]] = {
     "study": study,
     "effects": effects,
     "documents": documents,
+    "rules": rules,
     "thresholds": thresholds,
     **{f"api {room}": (lambda room=room: api(room)) for room in ROOMS},
 }

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import (
     BarColumn,
     Progress,
@@ -142,18 +143,20 @@ def check_workers(workers: int) -> None:
 
 def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] | None = None) -> None:
     """Print a table; columns of numbers to the right, with as many decimals as told."""
-    table = Table(title=title or None, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    table = Table(
+        title=escape(title) or None, title_justify="left", box=None, pad_edge=False, header_style="bold"
+    )
     named = frame.index.name is not None
     if named:
-        table.add_column(str(frame.index.name), justify="right")
+        table.add_column(escape(str(frame.index.name)), justify="right")
     for column in frame.columns:
         numeric = frame[column].dtype.kind in "biufc"
-        table.add_column(str(column), justify="right" if numeric else "left")
+        table.add_column(escape(str(column)), justify="right" if numeric else "left")
     for index, row in zip(frame.index, frame.itertuples(index=False), strict=True):
         cells = [
             _cell(value, (digits or {}).get(str(c))) for c, value in zip(frame.columns, row, strict=True)
         ]
-        table.add_row(*([str(index)] if named else []), *cells)
+        table.add_row(*map(escape, [str(index)] if named else []), *map(escape, cells))
     out.print(table)
     out.print()
 

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
+from acquisition.display import with_reasons
 from acquisition.quantities import percent
 from modalkit.cli.common import (
     check_folder,
@@ -28,10 +29,11 @@ from modalkit.output.schemas.effects import EffectEntry
 from modalkit.output.summary import searched_text, separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
+from modalkit.study.rules import read_rules
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
 from updating import Diagnosis
-from updating.effects import Obstacle
+from updating.diagnosis.answer.rules import DEFAULT_RULES
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -46,17 +48,22 @@ def diagnose(
         str, typer.Option(help="effects with the same size in all studies, comma-separated")
     ] = "",
     without: Annotated[str, typer.Option(help="effects to remove from the library, comma-separated")] = "",
+    rules: Annotated[
+        Path | None,
+        typer.Option(help="TOML file of what the verdict is decided by, where not by the defaults"),
+    ] = None,
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
     report: Report = None,
     figures: Figures = None,
 ) -> None:
     """Say where the gap between test and model lies, what causes it, and how far it closes."""
-    _check_places(studies, json, report, figures)
+    _check_places(studies, rules, json, report, figures)
     check_once(studies)
+    decided_by = DEFAULT_RULES if rules is None else read_rules(rules)
     with working("reading and identifying"):
         sessions = [open_study(read_study(path)) for path in studies]
     with working("weighing the effects"):
-        diagnosis = diagnose_studies(sessions, _names(shared), _names(without))
+        diagnosis = diagnose_studies(sessions, _names(shared), _names(without), rules=decided_by)
     show_diagnosis(diagnosis, *sessions)
     if json is not None:
         write_json(json, diagnosis_document(diagnosis, warnings_of(sessions)))
@@ -69,9 +76,13 @@ def _names(listed: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in listed.split(",") if name.strip())
 
 
-def _check_places(studies: list[Path], json: Path | None, report: Path | None, figures: Path | None) -> None:
+def _check_places(
+    studies: list[Path], rules: Path | None, json: Path | None, report: Path | None, figures: Path | None
+) -> None:
     """See that the results have places of their own, before work begins that would be lost."""
-    check_outputs((json, json_of("modalkit.diagnosis/1")), *report_wanted(report), reads=read_by(studies))
+    check_outputs(
+        (json, json_of("modalkit.diagnosis/1")), *report_wanted(report), reads=read_by(studies, rules)
+    )
     check_folder(figures)
 
 
@@ -108,16 +119,8 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     if any(one.sets for one in diagnosis.searched):
         out.print(f"Searched: {searched_text(diagnosis)}", markup=False)
     if diagnosis.not_examined:
-        out.print("Not examined: " + _not_examined(diagnosis.not_examined), markup=False)
+        out.print("Not examined: " + with_reasons(diagnosis.not_examined), markup=False)
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
-
-
-def _not_examined(effects: dict[str, Obstacle]) -> str:
-    """Return the effects that could not be examined, gathered by the reason."""
-    by_reason: dict[str, list[str]] = {}
-    for name, why in effects.items():
-        by_reason.setdefault(str(why), []).append(name)
-    return "; ".join(f"{', '.join(names)} ({why})" for why, names in by_reason.items())
 
 
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:

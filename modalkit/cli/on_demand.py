@@ -70,6 +70,12 @@ ENTRIES = (
         "--json 1, --figures 1",
     ),
     Entry(
+        "localise",
+        "localising",
+        "Say which region of the model the test speaks against, by several methods side by side.",
+        "--method 1, --kind 1, --json 1, --figures 1",
+    ),
+    Entry(
         "tables",
         "compare",
         "Make the papers' tables through the whole chain, our value beside the published one.",
@@ -85,7 +91,7 @@ ENTRIES = (
         "diagnose",
         "diagnosing",
         "Say where the gap between test and model lies, what causes it, and how far it closes.",
-        "--shared 1, --without 1, --json 1, --report 1, --figures 1",
+        "--shared 1, --without 1, --rules 1, --json 1, --report 1, --figures 1",
     ),
     Entry(
         "effects",

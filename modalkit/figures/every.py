@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from acquisition import FrfSet, HammerTest, InputError, ModalData, judge_hits
@@ -23,6 +24,7 @@ from modalkit.figures.update.all import update_figures
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.identification import Processed
 from updating import Diagnosis
+from updating.localisation import Localisation
 from updating.update import Update
 
 Drawings = dict[str, Figure]
@@ -33,8 +35,8 @@ def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
 
     Parameters
     ----------
-    result : HammerTest, FrfSet, Processed, ModalModel, ModalData, Modes, identification.Correlation, Diagnosis, Update
-        What to draw.
+    result : HammerTest, FrfSet, Processed, ModalModel, ModalData, Modes, Localisation, Diagnosis or Update
+        What to draw; or a correlation of two tests, ``identification.Correlation``.
     folder : path, optional
         Where the figures are saved as PNG files too; made if it is not there.
 
@@ -98,6 +100,19 @@ def _of_correlation(found: Correlation) -> Drawings:
     }
 
 
+def _of_localisation(found: Localisation) -> Drawings:
+    scores = np.stack([one.scores / one.scores.max() for one in found.found], axis=1)
+    note = f"{found.kind} of each region: score, % of the largest of the method"
+    if found.spread:
+        note += f"  ·  {found.spread}"
+    return {
+        "localisation": mac_figure(
+            scores, found.regions, [one.method for one in found.found], title=found.consensus, note=note,
+            row_name="region", column_name="method",
+        )
+    }  # fmt: skip
+
+
 _BY_KIND: dict[type, Callable[[Any], Drawings]] = {
     HammerTest: lambda test: {"hits": hits_figure(test, judge_hits(test))},
     FrfSet: _of_frfs,
@@ -106,6 +121,7 @@ _BY_KIND: dict[type, Callable[[Any], Drawings]] = {
     ModalData: _of_modes,
     Modes: lambda modes: _of_modes(modes.modal),
     Correlation: _of_correlation,
+    Localisation: _of_localisation,
     Diagnosis: lambda diagnosis: {"diagnosis": diagnosis_figure(diagnosis)},
     Update: update_figures,
 }

@@ -89,6 +89,7 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> Di
         DiagnosisDocument,
         diagnosis,
         cause=fill(CauseEntry, diagnosis, ranking=ranking),
+        rules=diagnosis.rules.changed,
         warnings=[*diagnosis.warnings, *warnings],
     )
 

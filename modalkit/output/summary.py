@@ -16,7 +16,7 @@ from updating.diagnosis.answer.verdict import NAME
 from updating.diagnosis.answer.where import CHANNELS, acting_together
 from updating.effects import Lack, Twin, in_a_set, twin_of
 from updating.effects.regions import named_places
-from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING, REJECTED_FIT, SEPARATED_SIGMA
+from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -86,14 +86,14 @@ def _unknown(diagnosis: Diagnosis) -> str:
     first = " + ".join(diagnosis.ranking[0].effects)
     if diagnosis.lacks in (None, "fit"):
         ends = [f"{name} = {e.bare}" for name, e in diagnosis.ranking[0].parameters.items() if e.at_bound]
-        if not ends or diagnosis.ranking[0].p_value < REJECTED_FIT:
+        if not ends or diagnosis.ranking[0].p_value < diagnosis.rules.rejected_fit:
             return nothing
         return f"the gap is real; {first} fits, at the end of what is believed of it: {', '.join(ends)}"
     if diagnosis.lacks == "closing":
         return f"the gap is real; {first} comes nearest, closes too little of it and leaves more than noise"
     if diagnosis.lacks == "one size":
         return f"the gap is real; {first} comes nearest, and parts of the data want another size of it each"
-    odds = f"{np.exp(BEYOND_NOTHING):.0f} times as likely"
+    odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
     return (
         f"{first} would explain the gap, and is not {odds} as that tolerances or noise are worse than stated"
     )
@@ -192,7 +192,7 @@ def _where(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         band = f"{where.band} " if where.band else ""
         return f"{band}The {where.channel} is where the best-fitting (rejected) explanations act; do not trust it."
-    acting = acting_together({**dict.fromkeys(CHANNELS, 0.0), **where.channels})
+    acting = acting_together({**dict.fromkeys(CHANNELS, 0.0), **where.channels}, rules=diagnosis.rules)
     each = " each" if len(acting) > 1 else ""
     text = f"{' and '.join(acting)} ({probability(where.channels[where.channel])}{each})"
     if where.location is None and not where.names:
@@ -339,9 +339,10 @@ def _next(diagnosis: Diagnosis) -> str:
 
 def _confirming(diagnosis: Diagnosis, test: NextTest) -> str:
     """Return how a named cause is confirmed: separated from the most probable other set, or why it cannot be."""
-    if test.expected_sigma < SEPARATED_SIGMA:
+    bar = diagnosis.rules.separated_sigma
+    if test.expected_sigma < bar:
         return (
-            f"no test that was weighed would confirm it, by {SEPARATED_SIGMA:g} sigma; nearest to it comes this: "
+            f"no test that was weighed would confirm it, by {bar:g} sigma; nearest to it comes this: "
             f"{test.measure}: {separated(test)}"
         )
     sentence = f"to confirm it, {test.measure}: {separated(test)}"

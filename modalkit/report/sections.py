@@ -14,7 +14,6 @@ from modalkit.output.summary import answers, searched_text, separates
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked
-from updating.thresholds import REJECTED_FIT
 
 ROWS = 8
 """Most explanations in the table, beside those of the answer."""
@@ -218,7 +217,7 @@ def _why(row: Ranked, diagnosis: Diagnosis) -> str:
     """Say whether a row is the answer, and if not, why."""
     if row.effects in diagnosis.sets:
         return "the answer" if len(diagnosis.sets) == 1 else "one of the answer"
-    if row.p_value < REJECTED_FIT:
+    if row.p_value < diagnosis.rules.rejected_fit:
         return f"rejected: does not fit (p = {bare_p(row.p_value)})".replace("p = <", "p <")
     best = max((r.probability for r in diagnosis.ranking), default=row.probability)
     if diagnosis.verdict == "none":

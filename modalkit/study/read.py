@@ -5,14 +5,12 @@ Models are loaded where a study is asked for one: a file with a mistake is refus
 
 from __future__ import annotations
 
-import tomllib
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
 from modalkit.study.errors import explain, known_keys
 from modalkit.study.hypothesis_table import HypothesisTable
@@ -26,6 +24,7 @@ from modalkit.study.tables import (
     TolerancesTable,
     UpdateTable,
 )
+from modalkit.study.toml import read_toml
 
 if TYPE_CHECKING:
     from updating.environment import Environment
@@ -287,19 +286,7 @@ def read_study(path: Path | str) -> Study:
     StudyError
         If the file cannot be read, is no TOML, or has a key or value that does not belong there.
     """
-    path = Path(path)
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise StudyError(
-            f"{path}: cannot be read ({error.strerror}); give the path of a study file"
-        ) from error
-    except UnicodeDecodeError as error:
-        binary = f"{path}: not a valid TOML file but binary data; give a study file that names it"
-        raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
-    except (ValueError, RecursionError) as error:
-        raise StudyError(f"{path}: not a valid TOML file: {error}") from error
-    return study_of(content, path)
+    return study_of(read_toml(Path(path), "study file"), Path(path))
 
 
 def study_of(content: dict[str, Any], path: Path) -> Study:

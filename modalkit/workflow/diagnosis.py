@@ -9,6 +9,7 @@ from acquisition.errors import InputError
 from modalkit.study.read import Study
 from modalkit.workflow.case import Session, sessions_of
 from updating import Diagnosis, diagnose, diagnose_together
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.effects import LIBRARY, Effect
 
 
@@ -17,6 +18,7 @@ def diagnose_studies(
     shared: Sequence[str] = (),
     without: Sequence[str] = (),
     *,
+    rules: DecisionRules = DEFAULT_RULES,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Diagnose one study, or several together.
@@ -29,6 +31,8 @@ def diagnose_studies(
         Effects of one and the same size in all studies; those of all others are free in each.
     without : sequence of str
         Effects of the library that are left out, as if it did not know them.
+    rules : DecisionRules
+        What the verdict is decided by.
     progress : function, optional
         Called with the name of every stage of the diagnosis of one study.
 
@@ -41,10 +45,11 @@ def diagnose_studies(
     """
     library, sessions = _library(without), sessions_of(studies)
     if len(sessions) > 1:
-        return diagnose_together([session.case for session in sessions], shared=shared, library=library)
+        cases = [session.case for session in sessions]
+        return diagnose_together(cases, shared=shared, library=library, rules=rules)
     if shared:
         raise InputError(f"--shared {','.join(shared)}: there is one study only; give those that share it")
-    return diagnose(sessions[0].case, library=library, progress=progress)
+    return diagnose(sessions[0].case, library=library, rules=rules, progress=progress)
 
 
 def _library(without: Sequence[str]) -> list[Effect]:

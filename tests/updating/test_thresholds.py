@@ -1,12 +1,14 @@
-"""All numbers that a diagnosis decides by stand in one module, each with what it limits; none stands elsewhere."""
+"""Numbers that several modules of a diagnosis read stand in one module; the rules of a verdict in one record."""
 
 from __future__ import annotations
 
 import ast
+import dataclasses
+import inspect
 import re
 from pathlib import Path
 
-from updating import thresholds
+from updating import DecisionRules, thresholds
 
 ROOT = Path(__file__).resolve().parents[2] / "updating"
 ROOMS = ("problem", "likelihood", "diagnosis")
@@ -43,7 +45,23 @@ def test_no_number_that_limits_something_stands_elsewhere() -> None:
         for path in sorted((ROOT / room).rglob("*.py")):
             constants = named(ast.parse(path.read_text(encoding="utf-8")))
             own = {name for name, value in constants.items() if has_number(value)} - set(NO_THRESHOLDS)
-            assert not own, f"{path.relative_to(ROOT)}: {own} belongs into thresholds.py"
+            assert not own, (
+                f"{path.relative_to(ROOT)}: {own}: a rule, a default of its function, or a threshold"
+            )
+
+
+def test_each_rule_says_its_meaning_and_its_unit_and_is_read() -> None:
+    text = inspect.getdoc(DecisionRules) or ""
+    source = "".join(
+        p.read_text(encoding="utf-8")
+        for p in [*sorted(ROOT.rglob("*.py")), *sorted((ROOT.parent / "modalkit").rglob("*.py"))]
+    )
+    for one in dataclasses.fields(DecisionRules):
+        found = re.search(rf"^{one.name} : float\n((?:    .*\n)+)", text, flags=re.MULTILINE)
+        assert found is not None, one.name
+        assert re.search(r"\[(-|%|sigma)\]", found[1]), f"{one.name} has no unit"
+        assert len(found[1]) > 50, f"{one.name} says too little"
+        assert re.search(rf"(?i)rules\.{one.name}\b", source), f"{one.name} decides nothing"
 
 
 def test_each_says_what_it_limits_and_is_used() -> None:

@@ -14,6 +14,7 @@ from updating.case import Case
 from updating.diagnosis.answer.consistency import Split, splits
 from updating.diagnosis.answer.remainder import remainder_of
 from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Verdict, Where
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.answer.shrink import shrinkage
 from updating.diagnosis.answer.verdict import decide, included, is_significant, rank, shortcoming
 from updating.diagnosis.answer.where import locate
@@ -36,13 +37,14 @@ from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, 
 from updating.problem.specimen import SpecimenProblem
 from updating.problem.stated_doubts import of_updates_alone
 from updating.test_data.same_places import unmatched
-from updating.thresholds import ENOUGH_SAMPLES, FEWEST_DATA, NEGLIGIBLE_PROBABILITY
+from updating.thresholds import ENOUGH_SAMPLES, NEGLIGIBLE_PROBABILITY
 
 
 def diagnose(
     case: Case,
     *,
     library: Sequence[Effect] | None = None,
+    rules: DecisionRules = DEFAULT_RULES,
     rng: np.random.Generator | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
@@ -54,6 +56,8 @@ def diagnose(
         Test, model, baseline and doubts.
     library : sequence of Effect, optional
         Effects to consider beside the study's hypotheses; left out, the whole library.
+    rules : DecisionRules
+        What the verdict is decided by.
     rng : Generator, optional
         For the bootstrap; left out, a fixed one, so that the answer repeats.
     progress : function, optional
@@ -72,7 +76,7 @@ def diagnose(
         _stage(progress, "pairing the modes")
         problem, warnings = pose(case)
         accepted = {name for name, _ in case.accepted}
-        return _diagnose(problem, (case.title,), accepted, library, rng, warnings, progress)
+        return _diagnose(problem, (case.title,), accepted, library, rules, rng, warnings, progress)
 
 
 def diagnose_together(
@@ -80,6 +84,7 @@ def diagnose_together(
     *,
     shared: Sequence[str] = (),
     library: Sequence[Effect] | None = None,
+    rules: DecisionRules = DEFAULT_RULES,
     rng: np.random.Generator | None = None,
 ) -> Diagnosis:
     """Diagnose several specimens whose gaps have causes in common.
@@ -91,7 +96,7 @@ def diagnose_together(
     shared : sequence of str
         Effects whose parameters are one and the same on all specimens (one accelerometer, one kind of clamp); those
         of all others are free on each.
-    library, rng
+    library, rules, rng
         As in :func:`diagnose`.
 
     Raises
@@ -113,7 +118,7 @@ def diagnose_together(
         several = Several(tuple(problem for problem, _ in diagnosis_problem), titles, frozenset(shared))
         accepted = {name for case in cases for name, _ in case.accepted}
         warnings = [f"{t}: {w}" for t, (_, own) in zip(titles, diagnosis_problem, strict=True) for w in own]
-        return _diagnose(several, titles, accepted, library, rng, warnings)
+        return _diagnose(several, titles, accepted, library, rules, rng, warnings)
 
 
 def _diagnose(
@@ -121,6 +126,7 @@ def _diagnose(
     titles: tuple[str, ...],
     accepted: set[str],
     library: Sequence[Effect] | None,
+    rules: DecisionRules,
     rng: np.random.Generator | None,
     warnings: list[str],
     progress: Callable[[str], None] | None = None,
@@ -132,17 +138,18 @@ def _diagnose(
     examined = [e for e in effects if e.name not in accepted or e.several or e.repeats_on(problem.predictor)]
     found = search(problem, examined)
     chance = found.empty.p_value
-    significant = is_significant(found, chance)
+    significant = is_significant(found, chance, rules=rules)
     comparable = not any(one.mostly_alone for one in problem.specimens)
     draws = np.random.default_rng(1) if rng is None else rng
     _stage(progress, "predicting modes held out")
-    shrink = _shrink(problem, found, draws, significant=significant)
+    shrink = _shrink(problem, found, draws, rules, significant=significant)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
-    left = remainder_of(problem, titles, leader if significant else found.empty.explanation, shrink)
+    stated = leader if significant else found.empty.explanation
+    left = remainder_of(problem, titles, stated, shrink, rules=rules)
     closed = None if shrink.closed is None else shrink.closed.value
-    lacks = shortcoming(found, comparable=comparable, closed=closed, left=left.significant)
-    verdict, sets = decide(found, lacks, significant=significant)
-    inconsistent = splits(problem, leader) if verdict == "named" else ()
+    lacks = shortcoming(found, comparable=comparable, closed=closed, left=left.significant, rules=rules)
+    verdict, sets = decide(found, lacks, significant=significant, rules=rules)
+    inconsistent = splits(problem, leader, rules=rules) if verdict == "named" else ()
     if inconsistent:
         verdict, sets, lacks = "unknown", (), "one size"
     _stage(progress, "choosing the next test")
@@ -151,16 +158,17 @@ def _diagnose(
         significant=significant,
         p_value=chance,
         gap=_gap(problem, titles),
-        where=_locate(problem, found, verdict),
+        where=_locate(problem, found, verdict, rules),
         shrink=shrink,
         verdict=verdict,
         sets=sets,
-        ranking=rank(problem, found),
-        next_test=propose(problem, found, sets, verdict),
+        ranking=rank(problem, found, rules=rules),
+        next_test=propose(problem, found, sets, verdict, separated=rules.separated_sigma),
         warnings=tuple(
             dict.fromkeys(
                 (
                     *warnings,
+                    *_on_rules(rules),
                     *_notes(problem, found, sets),
                     *_on_fit(leader, inconsistent, significant=significant),
                 )
@@ -173,7 +181,17 @@ def _diagnose(
         own=own,
         lacks=lacks if verdict == "unknown" else None,
         searched=found.searched,
+        rules=rules,
     )
+
+
+def _on_rules(rules: DecisionRules) -> list[str]:
+    """Return which rules differ from the defaults, and by what."""
+    stated = [
+        f"{name} = {value:g} (default: {getattr(DEFAULT_RULES, name):g})"
+        for name, value in rules.changed.items()
+    ]
+    return [f"the verdict was decided by rules of its own: {', '.join(stated)}"] if stated else []
 
 
 def _stage(progress: Callable[[str], None] | None, name: str) -> None:
@@ -245,10 +263,12 @@ def _corrected(
     return build
 
 
-def _locate(problem: DiagnosisProblem, found: Search, verdict: Verdict) -> Where:
+def _locate(
+    problem: DiagnosisProblem, found: Search, verdict: Verdict, rules: DecisionRules = DEFAULT_RULES
+) -> Where:
     """Say where the cause sits; of several specimens, on the first on which all of the best explanation acts."""
     if not isinstance(problem, Several):
-        return locate(problem.specimens[0], found, verdict=verdict)
+        return locate(problem.specimens[0], found, verdict=verdict, rules=rules)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
 
     def on(one: Explanation, i: int) -> Explanation:
@@ -264,7 +284,7 @@ def _locate(problem: DiagnosisProblem, found: Search, verdict: Verdict) -> Where
         for row in found.compared
     )
     part = replace(found, nothing=on(found.nothing, i), compared=rows)
-    return locate(problem.specimens[i], part, verdict=verdict, whole=found)
+    return locate(problem.specimens[i], part, verdict=verdict, whole=found, rules=rules)
 
 
 def _gap(problem: DiagnosisProblem, titles: tuple[str, ...]) -> Gap:
@@ -298,24 +318,35 @@ def _rms(values: pd.Series) -> float:
 
 
 def _shrink(
-    problem: DiagnosisProblem, found: Search, rng: np.random.Generator, *, significant: bool
+    problem: DiagnosisProblem,
+    found: Search,
+    rng: np.random.Generator,
+    rules: DecisionRules,
+    *,
+    significant: bool,
 ) -> Shrink:
     named = [row for row in found.compared if row.names]
     best = named[0].explanation if named else found.nothing
     # what holds the best set and more is no rival of it
     rivals = [row.explanation for row in named[1:] if not holds(row.names, best.names)]
     runner_up = rivals[0] if rivals else None
-    result = shrinkage(problem, found.nothing, best, runner_up, rng)
+    result = shrinkage(problem, found.nothing, best, runner_up, rng, rules=rules)
     return result if significant else replace(result, closed=None)
 
 
-def _on_fit(leader: Explanation, inconsistent: Sequence[Split], *, significant: bool) -> list[str]:
-    """Return what the reader ought to know about how far the data bear the first set of causes."""
+def _on_fit(
+    leader: Explanation, inconsistent: Sequence[Split], *, significant: bool, fewest: int = 6
+) -> list[str]:
+    """Return what the reader ought to know about how far the data bear the first set of causes.
+
+    What is left of fewer than ``fewest`` data beyond its parameters scatters by a third, so that it says little of the
+    noise.
+    """
     notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in inconsistent[:1]]
     if not significant:
         return notes
     beyond = len(leader.best.comparison.residual) - len(leader.best.coordinates)
-    if leader.names and beyond < FEWEST_DATA:
+    if leader.names and beyond < fewest:
         notes.append(
             f"only {beyond} data beyond the parameters of {' + '.join(leader.names)}: how well it fits rests on "
             "the stated noise; measure more modes, or shapes"

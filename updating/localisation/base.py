@@ -24,10 +24,12 @@ class Localiser(ABC):
     A subclass states the class variables and implements :meth:`scores`.
     """
 
-    name: ClassVar[str]
-    """Short name for tables."""
     summary: ClassVar[str]
-    """One sentence on what it looks at."""
+    """One sentence on what it compares."""
+    needs: ClassVar[str]
+    """One sentence on the data that it needs."""
+    misleads: ClassVar[str]
+    """One sentence on when its first region is the wrong one."""
     source: ClassVar[str]
     """Where it is published."""
     kinds: ClassVar[tuple[Kind, ...]] = ("stiffness",)
@@ -52,11 +54,15 @@ class Localiser(ABC):
             Not negative, the greater the more suspect; all zero where the data say nothing [-].
         """
 
-    def possible(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> bool:
-        """Tell whether the method can be used on these data."""
-        if kind not in self.kinds or (self.needs_shapes and not problem.measured.has_shapes):
-            return False
-        return kind != "damping" or bool(len(problem.damping_known))
+    def obstacle(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> str | None:
+        """Return why the method cannot be used on these data, or None."""
+        if kind not in self.kinds:
+            return f"compares {' and '.join(self.kinds)} alone"
+        if self.needs_shapes and not problem.measured.has_shapes:
+            return "needs mode shapes at points of the model; this test has none"
+        if kind == "damping" and not len(problem.damping_known):
+            return "needs damping, both measured and expected of the model"
+        return None
 
 
 def areas(problem: SpecimenProblem) -> FloatArray:

@@ -14,12 +14,6 @@ from updating.models.state import NOMINAL, Loss, State
 from updating.prediction.predict import Predictor
 from updating.problem.specimen import SpecimenProblem
 
-STEP = 0.05
-"""Logarithm of the factor at which sensitivities are taken [-]."""
-
-SMALL_LOSS = 1e-3
-"""Loss factor at which those of damping are taken [-]."""
-
 NODES: dict[Kind, FloatArray] = {
     "stiffness": np.array([-3.0, -1.7, -0.9, -0.4, -0.1, 0.1, 0.45, 1.1]),
     "mass": np.array([-1.1, -0.45, -0.1, 0.1, 0.4, 0.9, 1.7, 3.0]),
@@ -72,17 +66,27 @@ def _lossy(predictor: Predictor, stiffness: FloatArray) -> Callable[[float], Sta
     return lambda severity: State(losses=(Loss(float(np.exp(severity)) * whole, -1.0),))
 
 
-def columns(problem: SpecimenProblem, kind: Kind) -> FloatArray:
-    """Return the change of the data by each region's severity, at the nominal model, (n, n_regions) [-]."""
+def columns(problem: SpecimenProblem, kind: Kind, *, step: float = 0.05, small: float = 1e-3) -> FloatArray:
+    """Return the change of the data by each region's severity, at the nominal model, (n, n_regions) [-].
+
+    Parameters
+    ----------
+    problem : SpecimenProblem
+        A test beside a model.
+    kind : {"stiffness", "mass", "damping"}
+        What of a region changes.
+    step, small : float
+        Logarithm of the factor, and loss factor, at which sensitivities are taken [-].
+    """
     plain = problem.compare(NOMINAL).residual
     found = []
     for change in changes(problem, kind):
         if kind == "damping":
-            away = problem.compare(change.state(float(np.log(SMALL_LOSS)))).residual
-            found.append((plain - away) / SMALL_LOSS)
+            away = problem.compare(change.state(float(np.log(small)))).residual
+            found.append((plain - away) / small)
             continue
-        low, high = (problem.compare(change.state(s)).residual for s in (-STEP, STEP))
-        found.append((low - high) / (2 * STEP))
+        low, high = (problem.compare(change.state(s)).residual for s in (-step, step))
+        found.append((low - high) / (2 * step))
     return np.stack(found, axis=1)
 
 

@@ -18,8 +18,12 @@ from updating.problem.specimen import SpecimenProblem
 class Comac(Localiser):
     """One minus the coordinate modal assurance criterion of the nearest test point."""
 
-    name: ClassVar[str] = "COMAC"
     summary: ClassVar[str] = "One minus the correlation of the shapes over the modes at the nearest point."
+    needs: ClassVar[str] = "Needs shapes at a point or more in every region."
+    misleads: ClassVar[str] = (
+        "Misleads where a soft region changes shapes most elsewhere, at a free end for instance, and where a point is "
+        "wrong itself; regions that share a point rank alike."
+    )
     source: ClassVar[str] = "Lieven and Ewins (1988), Proc. IMAC 6"
 
     def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:

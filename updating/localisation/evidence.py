@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import expit, logsumexp
 
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Doubt
@@ -27,14 +27,8 @@ from updating.problem.specimen import SpecimenProblem
 DOUBT = Doubt(fidelity=0.1)
 """A change is rarely even over just one region: how far that is off, relative to the shift it makes."""
 
-COARSE = 42
-"""Severities at which the likelihood is taken at first."""
-
 AGAIN = (-1.5, 0.0, 1.5)
 """Where about the peak the data are predicted anew [standard deviations]."""
-
-ENOUGH = 4
-"""A region whose data cannot be predicted at so many severities is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +67,13 @@ class RegionPosterior:
         return np.asarray(self.probability.sum(axis=0))
 
     @property
+    def beside_none(self) -> FloatArray:
+        """Probability of each region where no change is as likely before as a change of one, (n_regions,) [-]."""
+        with np.errstate(divide="ignore"):
+            changed = float(logsumexp(self.log_evidence + np.log(self.prior / len(self.kinds))))
+        return np.asarray(self.regions * expit(changed))
+
+    @property
     def by_kind(self) -> dict[str, float]:
         """Probability that stiffness, mass or damping of a region is wrong [-]."""
         return dict(zip(self.kinds, self.probability.sum(axis=1).tolist(), strict=True))
@@ -104,28 +105,45 @@ def compare_regions(problem: SpecimenProblem, kinds: tuple[Kind, ...] = KINDS) -
 class RegionEvidence(Localiser):
     """Probability of each region by the evidence of a change of it."""
 
-    name: ClassVar[str] = "evidence"
     summary: ClassVar[str] = (
         "Marginal likelihood of a change of one region, severity and nuisances integrated."
+    )
+    needs: ClassVar[str] = (
+        "Needs frequencies, shapes to separate mirrored regions, and tolerances as they are."
+    )
+    misleads: ClassVar[str] = (
+        "Misleads where more than one region is wrong, or a support, a fluid or the measurement: that is put into the "
+        "region that resembles it most."
     )
     source: ClassVar[str] = "Beck and Katafygiotis (1998), J. Eng. Mech. 124, applied region by region"
     kinds: ClassVar[tuple[Kind, ...]] = KINDS
     needs_shapes: ClassVar[bool] = False
 
     def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
-        """Return the probability of each region, given that one region is changed [-]."""
-        return compare_regions(problem, (kind,)).regions
+        """Return the probability that each region is changed, where one or none is, each as likely before [-].
+
+        What the probabilities lack to 1 is that of no change.
+        """
+        return compare_regions(problem, (kind,)).beside_none
 
 
 def _compare(
-    problem: SpecimenProblem, plain: Comparison, state: Callable[[float], State], kind: Kind
+    problem: SpecimenProblem,
+    plain: Comparison,
+    state: Callable[[float], State],
+    kind: Kind,
+    *,
+    enough: int = 4,
 ) -> tuple[float, float]:
-    """Return log evidence and mean severity of one region's change."""
+    """Return log evidence and mean severity of one region's change.
+
+    A region whose data cannot be predicted at ``enough`` severities is left out.
+    """
     evaluations = {float(s): problem.compare(state(float(s)), doubt=DOUBT) for s in NODES[kind]}
     if kind != "damping":
         evaluations[0.0] = plain
     evaluations = {s: evaluation for s, evaluation in evaluations.items() if _finite(evaluation)}
-    if len(evaluations) < ENOUGH:
+    if len(evaluations) < enough:
         return -np.inf, 0.0
     start = _start(kind)
     grid, likely = refine(Between(evaluations).log_likelihoods, start)
@@ -139,11 +157,11 @@ def _compare(
     return float(logsumexp(score)), _moments(fine, score)[0]
 
 
-def _start(kind: Kind) -> FloatArray:
-    """Return severities at which the likelihood is taken at first, 0 among them where the prior changes there."""
+def _start(kind: Kind, *, count: int = 42) -> FloatArray:
+    """Return ``count`` severities at which the likelihood is taken at first, with 0 where the prior changes there."""
     low, high = NODES[kind][0], NODES[kind][-1]
-    sides = [np.linspace(low, high, COARSE)] if kind == "damping" else [
-        np.linspace(a, b, COARSE // 2) for a, b in ((low, 0.0), (0.0, high))
+    sides = [np.linspace(low, high, count)] if kind == "damping" else [
+        np.linspace(a, b, count // 2) for a, b in ((low, 0.0), (0.0, high))
     ]  # fmt: skip
     return np.unique(np.concatenate(sides))
 

@@ -25,8 +25,15 @@ class ForceResidual(Localiser):
         How the shapes are brought to the whole model.
     """
 
-    name: ClassVar[str] = "force residual"
-    summary: ClassVar[str] = "Forces left over when the expanded shape moves at the measured frequency."
+    summary: ClassVar[str] = (
+        "Forces left over when the shape, expanded by the model's modes (serep) or by the least force (dynamic), "
+        "moves at the measured frequency."
+    )
+    needs: ClassVar[str] = "Needs shapes at several points in every region."
+    misleads: ClassVar[str] = (
+        "Misleads with few points: between them the shape is the model's own, and the forces are errors of the "
+        "expansion."
+    )
     source: ClassVar[str] = (
         "Ojalvo and Pilon (1988), Proc. IMAC 6; Friswell and Mottershead (1995), section 6.4"
     )

@@ -30,9 +30,13 @@ class ConstitutiveError(Localiser):
         Weight of the measured components against the energy [-].
     """
 
-    name: ClassVar[str] = "constitutive relation error"
     summary: ClassVar[str] = (
         "Strain energy by which the stresses must break the model's law to meet the test."
+    )
+    needs: ClassVar[str] = "Needs shapes at a few points, and a model whose mass is right."
+    misleads: ClassVar[str] = (
+        "Misleads where the whole model is off (E, length): that is put into regions of high strain energy, as is "
+        "noise."
     )
     source: ClassVar[str] = "Ladeveze, Reynier and Nedjar (1994); Deraemaeker, Ladeveze and Leconte (2002)"
 

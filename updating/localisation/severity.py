@@ -18,20 +18,8 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
 from updating.thresholds import SHAPE_NOISE_SCALES
 
-LOOKS = 12
-"""How often the severities are refined at most."""
-
 EVEN = 0.4
-"""Neighbouring severities whose log-likelihoods differ by no more than this are near enough at the maximum [-]..."""
-
-SLACK = 0.3
-"""...and by so much more for each unit that they lie below it [-]."""
-
-BETWEEN = 8
-"""Into how many parts the steps are cut for the integral."""
-
-TINY = 1e-6
-"""Added to chi-squared so that it stays positive where nothing is left [-]."""
+"""Log-likelihoods of neighbouring severities may differ by so much at the maximum [-]."""
 
 DEPTH = 14.0
 """What lies further below the maximum of the log-likelihood does not count [-]."""
@@ -138,15 +126,21 @@ def _gram_matrices(data: FloatArray, variance: FloatArray) -> FloatArray:
 def _marginal(gram: FloatArray) -> FloatArray:
     """Return chi-squared plus the logarithm of the determinant from Gram matrices of [nuisances | residual].
 
-    The last pivot of the Cholesky factor is the length that the nuisances leave of the residual.
+    The last pivot of the Cholesky factor is the length that the nuisances leave of the residual; 1e-6 keeps it
+    positive where nothing is left.
     """
     p = gram.shape[1] - 1
-    pivots = np.diagonal(np.linalg.cholesky(gram + np.diag(np.r_[np.ones(p), TINY])), axis1=1, axis2=2)
+    pivots = np.diagonal(np.linalg.cholesky(gram + np.diag(np.r_[np.ones(p), 1e-6])), axis1=1, axis2=2)
     return np.asarray(pivots[:, p] ** 2 + 2 * np.log(pivots[:, :p]).sum(axis=1))
 
 
 def refine(
-    log_likelihoods: Callable[[FloatArray], FloatArray], grid: FloatArray
+    log_likelihoods: Callable[[FloatArray], FloatArray],
+    grid: FloatArray,
+    *,
+    rounds: int = 12,
+    even: float = EVEN,
+    slack: float = 0.3,
 ) -> tuple[FloatArray, FloatArray]:
     """Halve the steps between severities until the log-likelihood is even from one to the next where it counts.
 
@@ -156,6 +150,11 @@ def refine(
         Log-likelihoods at severities, (m,) to (m,) [-].
     grid : (m,) array
         Severities to begin with, in order.
+    rounds : int
+        How often they are halved at most.
+    even, slack : float
+        Neighbours whose log-likelihoods differ by no more than ``even`` are near enough at the maximum, and by
+        ``slack`` more for each unit that they lie below it [-].
 
     Returns
     -------
@@ -163,12 +162,12 @@ def refine(
         Severities in order, and their log-likelihoods [-].
     """
     values = log_likelihoods(grid)
-    for _ in range(LOOKS):
+    for _ in range(rounds):
         middle = (grid[1:] + grid[:-1]) / 2
         between = CubicSpline(grid, values)(middle)
         high = np.maximum(np.maximum(values[1:], values[:-1]), between)
         low = np.minimum(np.minimum(values[1:], values[:-1]), between)
-        coarse = (high > high.max() - DEPTH) & (high - low > EVEN + SLACK * (high.max() - high))
+        coarse = (high > high.max() - DEPTH) & (high - low > even + slack * (high.max() - high))
         if not coarse.any():
             break
         grid = np.r_[grid, middle[coarse]]
@@ -178,19 +177,21 @@ def refine(
     return grid, values
 
 
-def integrate(grid: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def integrate(grid: FloatArray, values: FloatArray, *, parts: int = 8) -> tuple[FloatArray, FloatArray]:
     """Return severities of refined steps, and the logarithm of the integral that each stands for, prior left out.
 
     Parameters
     ----------
     grid, values : (m,) arrays
         What :func:`refine` gave [-].
+    parts : int
+        Into how many parts each step is cut.
     """
     place = np.arange(len(grid), dtype=float)
-    fine = np.interp(np.linspace(0, len(grid) - 1, BETWEEN * (len(grid) - 1) + 1), place, grid)
+    fine = np.interp(np.linspace(0, len(grid) - 1, parts * (len(grid) - 1) + 1), place, grid)
     middle = (fine[1:] + fine[:-1]) / 2
     highest = (
-        np.repeat(np.maximum(values[1:], values[:-1]), BETWEEN) + EVEN
+        np.repeat(np.maximum(values[1:], values[:-1]), parts) + EVEN
     )  # a spline may swing where steps are long
     return middle, np.asarray(np.minimum(CubicSpline(grid, values)(middle), highest) + np.log(np.diff(fine)))
 

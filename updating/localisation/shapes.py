@@ -18,15 +18,6 @@ from updating.models.absorbers import structural
 from updating.models.state import NOMINAL
 from updating.problem.specimen import SpecimenProblem
 
-ROUNDS = 6
-"""How often the two factors of the constants are fitted in turn."""
-
-ANCHOR = 1e-6
-"""Weight of the model's shape where no product holds a component [-]."""
-
-TRUST = 1e4
-"""Weight of the measured components against the dynamic residual in an expansion [-]."""
-
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
@@ -90,16 +81,21 @@ def _modes(problem: SpecimenProblem) -> FloatArray:
     return np.asarray(elastic[:, columns] * np.sign(alike[rows, columns]))
 
 
-def _components(problem: SpecimenProblem, model: FloatArray) -> FloatArray:
-    """Fit the components of a shape at all points to the products of two of them, (n_points, n_modes)."""
+def _components(
+    problem: SpecimenProblem, model: FloatArray, *, rounds: int = 6, weight: float = 1e-6
+) -> FloatArray:
+    """Fit the components of a shape at all points to the products of two of them, (n_points, n_modes).
+
+    The two factors are fitted in turn; ``weight`` is that of the model's shape, for where no product holds a component.
+    """
     test = problem.measured
     share = np.sum(test.constants * problem.nominal.constants, axis=0)
     share = share / np.maximum(np.sum(problem.nominal.constants**2, axis=0), 1e-300)
     constants = test.constants / np.where(np.abs(share) > 0, share, 1.0)
     bare = test.hit[:, None] < 0
-    anchor = ANCHOR * np.mean(model**2, axis=0)
+    anchor = weight * np.mean(model**2, axis=0)
     found = model
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         upper, lower = anchor * model, np.broadcast_to(anchor, model.shape).copy()
         right = np.where(bare, 1.0, found[test.hit])
         np.add.at(upper, test.seen, constants * right)
@@ -124,7 +120,7 @@ def serep(shapes: Shapes) -> FloatArray:
     return np.asarray(basis @ np.linalg.lstsq(shapes.rows @ basis, shapes.measured, rcond=1e-8)[0])
 
 
-def dynamic(shapes: Shapes, *, trust: float = TRUST) -> FloatArray:
+def dynamic(shapes: Shapes, *, trust: float = 1e4) -> FloatArray:
     """Expand the shapes so that they leave the least dynamic residual, weighed by the flexibility.
 
     Parameters

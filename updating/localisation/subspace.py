@@ -25,8 +25,15 @@ class BestSubspace(Localiser):
         Whether tolerances, calibration, damping and positions are projected out first.
     """
 
-    name: ClassVar[str] = "best subspace"
-    summary: ClassVar[str] = "How far the weighed error shrinks by the best change of one region alone."
+    summary: ClassVar[str] = (
+        "How far the best change of one region alone reduces the weighted error, once tolerances, calibration and the "
+        "like are projected out (subspace-plain: without that)."
+    )
+    needs: ClassVar[str] = "Needs frequencies, and shapes to separate mirrored regions."
+    misleads: ClassVar[str] = (
+        "Misleads where a change is large, since sensitivities are those of the nominal model; subspace-plain also "
+        "where the whole model is off within its tolerances."
+    )
     source: ClassVar[str] = "Lallement and Piranda (1990), Proc. IMAC 8; Friswell, Garvey and Penny (1997)"
     kinds: ClassVar[tuple[Kind, ...]] = KINDS
     needs_shapes: ClassVar[bool] = False

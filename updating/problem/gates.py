@@ -15,7 +15,6 @@ from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 from updating.problem.theory_error import TheoryError, discrepancy, theory_error
 from updating.test_data.measured import Measured
-from updating.thresholds import FEWEST_MODES, SKIPPED_MODE_GAIN, UNLIKE_RATIOS
 
 __all__ = [
     "TheoryError",
@@ -84,7 +83,9 @@ def _percent(share: float) -> str:
     return percent(100 * abs(share))
 
 
-def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None = None) -> list[str]:
+def on_modes(
+    measured: Measured, predicted: FloatArray, order: IntArray | None = None, *, fewest: int = 3
+) -> list[str]:
     """Return remarks on too few modes and, where only frequencies are known, on a mode that seems to be missing.
 
     Parameters
@@ -96,10 +97,12 @@ def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None =
     order : (n_modes,) int array, optional
         Rank of the model mode of each measured one; left out, its own. Where the pairing has left modes out already,
         no more is said of it.
+    fewest : int
+        With fewer modes paired little can be told apart: an effect and the tolerances are as many.
     """
     count = len(measured.frequency)
     notes = []
-    if count < FEWEST_MODES:
+    if count < fewest:
         notes.append(f"only {count} mode{'s' * (count > 1)} paired: little can be told apart")
     if measured.has_shapes or (order is not None and np.any(order != np.arange(count))):
         return notes
@@ -112,7 +115,9 @@ def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None =
     return notes
 
 
-def missing_mode(test: FloatArray, model: FloatArray) -> int | None:
+def missing_mode(
+    test: FloatArray, model: FloatArray, *, gain: float = 4.0, unlike: float = 0.02
+) -> int | None:
     """Return after how many modes one seems to be missing in a sequence of frequencies, or None.
 
     Parameters
@@ -121,6 +126,11 @@ def missing_mode(test: FloatArray, model: FloatArray) -> int | None:
         Measured frequencies [Hz].
     model : (m,) array
         The model's from the lowest [Hz].
+    gain : float
+        By how much leaving one out must lower the scatter of the frequency ratios [-]. Judged. Doubled: fewer
+        warnings, of test and model paired by rank.
+    unlike : float
+        Scatter of the frequency ratios, relative, below which nothing is suspected [-]: what most effects make.
 
     Returns
     -------
@@ -129,13 +139,13 @@ def missing_mode(test: FloatArray, model: FloatArray) -> int | None:
         about their mean to a quarter. A factor common to all modes does not count: it is what is looked for.
     """
     count = len(test)
-    if count < FEWEST_MODES or len(model) <= count:
+    if count < 3 or len(model) <= count:
         return None
     plain = float(np.std(np.log(test / model[:count])))
     ranks = np.arange(count)[None, :] + (np.arange(count)[None, :] >= np.arange(1, count)[:, None])
     scatter = np.std(np.log(test[None, :] / model[ranks]), axis=1)
     best = int(np.argmin(scatter))
-    suspect = plain > UNLIKE_RATIOS and plain > SKIPPED_MODE_GAIN * scatter[best]
+    suspect = plain > unlike and plain > gain * scatter[best]
     return best + 1 if suspect else None
 
 

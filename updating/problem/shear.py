@@ -15,7 +15,6 @@ from updating.models.build import build_structure
 from updating.models.parts import Region
 from updating.models.spec import Spec
 from updating.models.terms import shear_coefficient
-from updating.thresholds import SOFTER_IN_SHEAR
 
 
 def slackening(spec: Spec, order: IntArray) -> FloatArray:
@@ -41,11 +40,15 @@ def slackening(spec: Spec, order: IntArray) -> FloatArray:
     return np.asarray(np.log(there / here)[order])
 
 
-def _softer(region: Region, poisson: float) -> Region:
-    """Return a region softer in shear where it has a section of its own and no shear coefficient."""
+def _softer(region: Region, poisson: float, *, share: float = 0.6) -> Region:
+    """Return a region softer in shear where it has a section of its own and no shear coefficient.
+
+    Its coefficient is a ``share`` of a rectangle's, one standard deviation below it: a thin tube. Halved, an I: the
+    doubt doubles.
+    """
     if region.shear_coefficient is not None or (region.area is None and region.inertia is None):
         return region
-    return replace(region, shear_coefficient=SOFTER_IN_SHEAR * shear_coefficient(poisson))
+    return replace(region, shear_coefficient=share * shear_coefficient(poisson))
 
 
 def _lowest(spec: Spec, count: int) -> FloatArray:

@@ -42,14 +42,7 @@ from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured
-from updating.thresholds import (
-    BENT_DATA,
-    MESH_UNEVENNESS,
-    SHAPE_NOISE_SCALES,
-    STATED_MASS_DOUBT,
-    STRAINED_LINEARISATION,
-    WIDE_TOLERANCE,
-)
+from updating.thresholds import SHAPE_NOISE_SCALES, STATED_MASS_DOUBT, STRAINED_LINEARISATION
 from updating.tolerances import Tolerances
 
 
@@ -254,7 +247,8 @@ class SpecimenProblem:
         """
         if not len(self.sigmas) or self.baseline is not None:
             return False
-        return float(self._relative_sigmas.max()) > WIDE_TOLERANCE or float(self.bending.max()) > BENT_DATA
+        # half the square of 4 % is the error of a linearisation in ln f, as large as its usual noise
+        return float(self._relative_sigmas.max()) > 0.04 or float(self.bending.max()) > 1.0
 
     @cached_property
     def bending(self) -> FloatArray:
@@ -284,7 +278,7 @@ class SpecimenProblem:
         """
         if self.baseline is not None:
             return 0.0
-        bent = np.sqrt(self.bending / BENT_DATA) * STRAINED_LINEARISATION
+        bent = np.sqrt(self.bending) * STRAINED_LINEARISATION
         moved = np.abs(shift) * np.maximum(self._relative_sigmas, bent)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
@@ -354,14 +348,15 @@ class SpecimenProblem:
     def _left_out(self) -> tuple[FloatArray, FloatArray]:
         """Return what mesh and theory leave off in ln f: columns common to all modes, variance mode by mode.
 
-        Nothing where nothing is known of it, or a baseline took it out.
+        Nothing where nothing is known of it, or a baseline took it out. Half of the mesh's own error is in doubt mode
+        by mode, beside all of it in common (judged).
         """
         found = self.theory_error
         if found is None or not found.known or self.baseline is not None:
             n = len(self.measured.frequency)
             return np.zeros((n, 0)), np.zeros(n)
         columns = [found.mesh, *(column for column in (found.width, found.shear) if column.any())]
-        return np.stack(columns, axis=1), (MESH_UNEVENNESS * found.mesh) ** 2
+        return np.stack(columns, axis=1), (0.5 * found.mesh) ** 2
 
     def _accepted_variance(self) -> FloatArray:
         """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-].

@@ -14,10 +14,9 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.build import build_structure
 from updating.models.spec import Spec
-from updating.thresholds import STRIP_ACROSS, STRIP_ALONG, TWIST_ALONE
 
 
-def stiffening(spec: Spec, order: IntArray) -> FloatArray:
+def stiffening(spec: Spec, order: IntArray, *, along: int = 40, across: int = 4) -> FloatArray:
     """Return by how much bending across the width raises a beam's frequencies.
 
     Parameters
@@ -26,6 +25,11 @@ def stiffening(spec: Spec, order: IntArray) -> FloatArray:
         The model; its regions and masses are left aside.
     order : (n_modes,) int array
         Rank of each mode among the elastic modes.
+    along : int
+        Most elements along the plate: a clamp's hold on the section is resolved for beams wider than a thirtieth of
+        their length. Doubled: twice the work for a remark.
+    across : int
+        Elements across it: frequencies are good to a thousandth of the shift. Doubled: four times the work.
 
     Returns
     -------
@@ -36,10 +40,10 @@ def stiffening(spec: Spec, order: IntArray) -> FloatArray:
         return np.zeros(len(order))
     count = int(order.max()) + 1
     outline = (spec.length, spec.width, spec.thickness)
-    cells = min(spec.elements[0], STRIP_ALONG)
+    cells = min(spec.elements[0], along)
     thick = spec.theory == "timoshenko"
     plate = Spec(
-        "plate", *outline, (cells, STRIP_ACROSS), spec.clamped, "mindlin" if thick else "kirchhoff", spec.material
+        "plate", *outline, (cells, across), spec.clamped, "mindlin" if thick else "kirchhoff", spec.material
     )  # fmt: skip
     beam = Spec("beam", *outline, (cells,), spec.clamped, spec.theory, spec.material)
     found, own = _bending(plate, count), _bending(beam, count)
@@ -48,12 +52,16 @@ def stiffening(spec: Spec, order: IntArray) -> FloatArray:
     return np.asarray(shift[order])
 
 
-def _bending(spec: Spec, count: int) -> FloatArray:
-    """Return the lowest frequencies of modes that move the middle line (count,) [rad/s]."""
+def _bending(spec: Spec, count: int, *, twist: float = 0.1) -> FloatArray:
+    """Return the lowest frequencies of modes that move the middle line (count,) [rad/s].
+
+    Those that move it by less than a share ``twist`` of what the liveliest does are twist. Doubled: a bending mode
+    that the line's ends alone see may be missed.
+    """
     structure = build_structure(spec)
     first = structure.rigid_modes
     values, vectors = structure.eigen(first + (3 * count + 4 if spec.kind == "plate" else count))
     line = np.linspace(0.0, spec.length, 8 * count + 1)
     points = np.stack([line, np.full_like(line, spec.width / 2)], axis=1)[:, : spec.dim]
     moved = np.abs(structure.rows(points)["w"] @ vectors[:, first:]).max(axis=0)
-    return np.asarray(np.sqrt(values[first:][moved > TWIST_ALONE * moved.max()][:count]))
+    return np.asarray(np.sqrt(values[first:][moved > twist * moved.max()][:count]))

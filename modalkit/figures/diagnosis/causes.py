@@ -22,7 +22,6 @@ from modalkit.figures.style import (
 )
 from modalkit.figures.words import parameters, short
 from updating import Diagnosis
-from updating.thresholds import REJECTED_FIT
 
 ROWS = 7
 """Most rows shown."""
@@ -53,7 +52,7 @@ def explanations(diagnosis: Diagnosis) -> list[_Row]:
     rows = [_Row("tolerances and noise alone", "", alone, none)]
     for row in diagnosis.ranking:
         detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
-        if row.p_value < REJECTED_FIT and not none:
+        if row.p_value < diagnosis.rules.rejected_fit and not none:
             detail = "does not fit"
         rows.append(_Row(short(row.effects), detail, row.probability, row.effects in chosen))
     return sorted(rows, key=lambda row: (not row.answer, -row.probability))

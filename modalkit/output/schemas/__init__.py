@@ -10,6 +10,7 @@ from modalkit.output.schemas.blind import BlindDocument
 from modalkit.output.schemas.correlation import ComparisonDocument, CorrelationDocument
 from modalkit.output.schemas.diagnosis import DiagnosisDocument
 from modalkit.output.schemas.effects import EffectsDocument
+from modalkit.output.schemas.localisation import LocalisationDocument
 from modalkit.output.schemas.modes import ModesDocument
 from modalkit.output.schemas.plan import PlanDocument
 from modalkit.output.schemas.real import RealDocument
@@ -19,6 +20,7 @@ DOCUMENTS = (
     ModesDocument,
     CorrelationDocument,
     ComparisonDocument,
+    LocalisationDocument,
     UpdateDocument,
     DiagnosisDocument,
     EffectsDocument,

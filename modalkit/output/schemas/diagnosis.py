@@ -223,4 +223,8 @@ class DiagnosisDocument(TypedDict):
     next_test: Annotated[Sequence[NextTestEntry], "what to measure next, best first"]
     searched: Annotated[Sequence[SearchedEntry], "how many sets of causes were searched"]
     not_examined: Annotated[Mapping[str, str], "effects that could not be examined, and why"]
+    rules: Annotated[
+        Mapping[str, float],
+        "rules that differ from the defaults, by name; empty where none does [unit of the rule]",
+    ]
     warnings: Annotated[Sequence[str], "what the user ought to know"]

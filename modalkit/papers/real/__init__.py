@@ -2,7 +2,7 @@
 
 from modalkit.papers.real.case import Case, Fact, Source
 from modalkit.papers.real.cases import CASES
-from modalkit.papers.real.document import counts, put_between_markers, real_document, real_markdown
+from modalkit.papers.real.document import counts, real_document
 from modalkit.papers.real.judging import RULES, Judgement, judge
 from modalkit.papers.real.running import RealOutcome, diagnose_together_by, run_real
 from modalkit.papers.real.table import real_table
@@ -18,9 +18,7 @@ __all__ = [
     "counts",
     "diagnose_together_by",
     "judge",
-    "put_between_markers",
     "real_document",
-    "real_markdown",
     "real_table",
     "run_real",
 ]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from conforming import departures
 
-from modalkit.output.schemas import DiagnosisDocument, ModesDocument, UpdateDocument
+from modalkit.output.schemas import DiagnosisDocument, LocalisationDocument, ModesDocument, UpdateDocument
 from modalkit.samples import sample_file
 
 Run = Callable[..., tuple[int, str, str]]
@@ -120,6 +120,36 @@ def test_correlate_and_update_print_their_tables(run: Run, tmp_path: Path) -> No
     assert not departures(record, UpdateDocument)
     assert record["parameters"][0]["name"] == "E"
     assert 0.74 < record["parameters"][0]["factor"] < 0.77
+
+
+def test_localise_puts_the_tape_where_it_is(run: Run, tmp_path: Path) -> None:
+    target, figures = tmp_path / "l.json", tmp_path / "figures"
+    study = sample_file("tape_taped/study.toml")
+    code, out, _ = run("localise", study, "--json", target, "--figures", figures)
+    assert code == 0
+    assert "methods put taped first" in out.splitlines()[0]
+    assert "x [m]" in out
+    record = json.loads(target.read_text())
+    assert not departures(record, LocalisationDocument)
+    assert [region["name"] for region in record["regions"]] == ["bare", "taped", "bare"]
+    assert record["methods"][0]["method"] == "evidence"
+    assert record["methods"][0]["ranks"][1] == 1
+    assert record["unchanged"] < 1e-3
+    assert (figures / "localisation.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--kind", "colour"), "--kind colour: write one of stiffness, mass, damping"),
+        (("--method", "guess"), "--method guess: write one of evidence"),
+        (("--kind", "damping"), "needs damping, both measured and expected"),
+    ],
+)
+def test_localise_says_what_it_cannot_compare(run: Run, options: tuple[str, ...], message: str) -> None:
+    code, _, err = run("localise", beam("published.toml"), *options)
+    assert code == 2
+    assert message in err
 
 
 def test_effects_lists_the_names_of_the_contract(run: Run, tmp_path: Path) -> None:

@@ -35,6 +35,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "identify --json": ("identify", "study.toml"),
     "identify --report": ("identify", "study.toml"),
     "correlate --json": ("correlate", "study.toml"),
+    "localise --json": ("localise", "study.toml"),
     "tables --output": ("tables",),
     "update --json": ("update", "study.toml"),
     "update --report": ("update", "study.toml"),
@@ -51,7 +52,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }
 """Every option that names a file to write, by a command that has it; folders are below."""
 FOLDERS = {"--figures", "--json-dir"}
-READ = {"layout", "file", "data", "check", "files", "other", "study", "studies", "folder"}
+READ = {"layout", "file", "data", "check", "files", "other", "rules", "study", "studies", "folder"}
 
 
 @pytest.fixture

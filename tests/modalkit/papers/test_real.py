@@ -1,6 +1,7 @@
 """Real structures, their cause withheld: the rules, what is written for the diagnosis, and what it answers."""
 
 import json
+import sys
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,17 +21,18 @@ from modalkit.papers.real import (
     Source,
     counts,
     judge,
-    put_between_markers,
     real_document,
-    real_markdown,
     real_table,
     run_real,
 )
 from modalkit.papers.real.anonymous import data_files, without_tables, write_anonymous
 from modalkit.papers.real.case import PUBLISHED, sets
-from modalkit.papers.real.document import BEGIN, END
 
 ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+from real_page import BEGIN, END, put_between_markers, real_markdown  # noqa: E402
+
 SAMPLES = ROOT / "sample_data"
 WATER = Fact("fluid_added_mass.fluid_density", 990.0, 1000.0, "water")
 

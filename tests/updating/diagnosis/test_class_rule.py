@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from updating.diagnosis.answer.verdict import decide, is_significant
+from acquisition.errors import InputError
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
+from updating.diagnosis.answer.verdict import decide, is_significant, rejected, shortcoming
 
 
 def row(
@@ -16,7 +18,7 @@ def row(
     *,
     fits: float = 0.5,
     without: float = -np.inf,
-    rejected: bool = False,
+    at_end: bool = False,
 ) -> Any:
     """Return a set that was weighed, its parameters in the middle of their priors and determined."""
     marginal = SimpleNamespace(log_likelihood=log_likelihood)
@@ -29,15 +31,15 @@ def row(
         samples=np.full((2, size), 0.5),
         weights=np.array([0.5, 0.5]),
     )
-    share = {"probability": probability, "p_value": fits, "as_stated": fits, "rejected": rejected}
-    share |= {"without": without}
+    share = {"probability": probability, "p_value": fits, "as_stated": fits, "without": without}
+    share["extreme"] = explanation.names if at_end else ()
     return SimpleNamespace(names=explanation.names, explanation=explanation, **share)
 
 
-def answer(*rows: Any) -> tuple[str, tuple[tuple[str, ...], ...]]:
+def answer(*rows: Any, rules: DecisionRules = DEFAULT_RULES) -> tuple[str, tuple[tuple[str, ...], ...]]:
     """Return the verdict where the empty set is far behind."""
-    empty = row("", 0.0, -1000.0)
-    return decide(SimpleNamespace(compared=rows, empty=empty), significant=True)  # type: ignore[arg-type]
+    found: Any = SimpleNamespace(compared=rows, empty=row("", 0.0, -1000.0))
+    return decide(found, significant=True, rules=rules)
 
 
 @pytest.mark.parametrize(("gain", "verdict"), [(0.5, "named"), (6.0, "class")])
@@ -52,7 +54,7 @@ def test_another_cause_that_holds_the_rest_is_a_rival() -> None:
 
 
 def test_a_set_at_the_end_of_its_range_leaves_the_first_no_more_certain() -> None:
-    rows = row("E", 0.53, 100.0), row("density", 0.4, 99.5, rejected=True), row("taper", 0.07, 90.0)
+    rows = row("E", 0.53, 100.0), row("density", 0.4, 99.5, at_end=True), row("taper", 0.07, 90.0)
     assert answer(*rows) == ("class", (("E",), ("density",), ("taper",)))
 
 
@@ -62,7 +64,7 @@ def test_what_setting_data_aside_explains_by_itself_has_no_share() -> None:
 
 
 def test_a_set_at_the_end_of_its_range_that_holds_little_is_no_rival() -> None:
-    rows = row("E", 0.96, 100.0), row("density", 0.04, 99.5, rejected=True)
+    rows = row("E", 0.96, 100.0), row("density", 0.04, 99.5, at_end=True)
     assert answer(*rows) == ("named", (("E",),))
 
 
@@ -96,3 +98,41 @@ def test_data_as_well_set_aside_by_themselves_show_no_gap(without: float, gap: b
     found: Any = SimpleNamespace(compared=(cause, empty), empty=empty)
     assert is_significant(found, p_value=0.03) is gap
     assert is_significant(found, p_value=1e-4)
+
+
+def test_a_certainty_of_its_own_names_what_the_default_leaves_a_class() -> None:
+    rows = row("E", 0.9, 100.0), row("density", 0.1, 90.0)
+    assert answer(*rows)[0] == "class"
+    assert answer(*rows, rules=DecisionRules(credible_share=0.85)) == ("named", (("E",),))
+
+
+def test_the_whole_beside_its_part_and_an_effect_beside_nothing_have_a_rule_each() -> None:
+    rows = row("E taper", 0.99, 105.0), row("E", 0.01, 100.0)
+    assert answer(*rows)[1] == (("E", "taper"), ("E",))
+    assert answer(*rows, rules=DecisionRules(effect_shows_gap=4.0))[1] == (("E", "taper"), ("E",))
+    assert answer(*rows, rules=DecisionRules(whole_beside_part=4.0))[1] == (("E", "taper"),)
+    found: Any = SimpleNamespace(
+        compared=(row("E", 0.1, 105.0), row("", 0.9, 100.0)), empty=row("", 0.9, 100.0)
+    )
+    assert not is_significant(found, 0.5)
+    assert not is_significant(found, 0.5, rules=DecisionRules(whole_beside_part=4.0))
+    assert is_significant(found, 0.5, rules=DecisionRules(effect_shows_gap=4.0))
+
+
+def test_a_fit_is_rejected_by_the_rule_of_its_number_of_causes() -> None:
+    single, pair = row("E", 1.0, 100.0, fits=0.01), row("E taper", 1.0, 100.0, fits=0.01)
+    assert [rejected(one, DEFAULT_RULES) for one in (single, pair)] == [False, True]
+    strict, mild = DecisionRules(rejected_fit=0.05), DecisionRules(doubted_fit=0.001)
+    assert [rejected(one, strict) for one in (single, pair)] == [True, True]
+    assert [rejected(one, mild) for one in (single, pair)] == [False, False]
+    found: Any = SimpleNamespace(compared=(single,), empty=row("", 0.0, 0.0))
+    assert shortcoming(found) is None
+    assert shortcoming(found, rules=strict) == "fit"
+
+
+def test_rules_that_cannot_be_are_refused_and_those_changed_are_listed() -> None:
+    assert DEFAULT_RULES.changed == {}
+    assert DecisionRules(split_sigma=4, rival_share=0.02).changed == {"split_sigma": 4}
+    for name, value in (("credible_share", 1.5), ("split_sigma", 0.0), ("close_fits", float("inf"))):
+        with pytest.raises(InputError, match=f"rule {name}"):
+            DecisionRules(**{name: value})

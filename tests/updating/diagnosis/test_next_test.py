@@ -7,6 +7,7 @@ import pytest
 
 from acquisition import ModalData
 from updating.case import Case
+from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.answer.verdict import decide
 from updating.diagnosis.diagnose import diagnose, diagnose_together, pose
 from updating.diagnosis.next_test import _Found, propose
@@ -25,7 +26,6 @@ from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.axes import Axes
 from updating.test_data.taken import measured_from_modes
-from updating.thresholds import BALANCE_SIGMA, SEPARATED_SIGMA
 from updating.tolerances import Tolerances
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
@@ -67,7 +67,7 @@ def test_weighing_sees_density_as_far_as_tolerances_and_balance_allow(
     a, b = rivals["density"], rivals["E"]
     found = separation_of(Weigh(clamped=True), problem, a, b)
     heavier = np.log(1 / 0.85)
-    doubt = np.sqrt(0.003**2 + 0.005**2 + 0.002**2 + BALANCE_SIGMA**2)
+    doubt = np.sqrt(0.003**2 + 0.005**2 + 0.002**2 + Weigh.sigma**2)
     assert found == pytest.approx(heavier / doubt, rel=0.15)
     assert separation_of(Weigh(clamped=True), problem, rivals["length"], b) < 0.3 * found
 
@@ -145,11 +145,13 @@ def test_a_named_cause_is_separated_from_its_most_probable_rival_first(problem: 
     ]
     tests = propose(problem, found, (("E",),), "named")
     confirms = [
-        (("E",), rivals[0]) in test.pairs and test.expected_sigma >= SEPARATED_SIGMA for test in tests
+        (("E",), rivals[0]) in test.pairs and test.expected_sigma >= DEFAULT_RULES.separated_sigma
+        for test in tests
     ]
     assert confirms == sorted(confirms, reverse=True)
     assert all(
-        test.expected_sigma >= SEPARATED_SIGMA or test.pairs == ((("E",), rivals[0]),) for test in tests
+        test.expected_sigma >= DEFAULT_RULES.separated_sigma or test.pairs == ((("E",), rivals[0]),)
+        for test in tests
     )
     assert {("E",)} == {pair[0] for test in tests for pair in test.pairs}
 

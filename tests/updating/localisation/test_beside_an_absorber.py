@@ -36,7 +36,7 @@ def test_expanded_shapes_of_the_model_itself_leave_no_force() -> None:
     assert np.diag(whole.T @ shapes.mass @ whole) == pytest.approx(1.0, rel=1e-3)
 
 
-@pytest.mark.parametrize("method", [m for m in METHODS if m.needs_shapes], ids=repr)
+@pytest.mark.parametrize("method", [m for m in METHODS.values() if m.needs_shapes], ids=repr)
 def test_methods_of_shapes_have_a_score_for_every_region(method: Localiser) -> None:
     scores = method.scores(accepted(State(regional={(6, "E"): 0.6})))
     assert scores.shape == (10,)

@@ -71,11 +71,11 @@ def altered(state: str) -> SpecimenProblem:
     return pose(case_of(test, BEAM))[0]
 
 
-@pytest.mark.parametrize("method", METHODS, ids=repr)
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 @pytest.mark.parametrize("shapes_only", [False, True])
 def test_scores_are_one_sound_number_per_region(method: Localiser, shapes_only: bool) -> None:
     problem = soft(3, 0.4, shapes_only=shapes_only)
-    assert method.possible(problem)
+    assert method.obstacle(problem) is None
     scores = method.scores(problem)
     assert scores.shape == (10,)
     assert np.isfinite(scores).all()
@@ -215,17 +215,17 @@ def test_frequencies_alone_leave_nothing_to_the_shape_methods() -> None:
     )  # fmt: skip
     problem = pose(case_of(alone, BEAM))[0]
     for method in (ForceResidual(), ConstitutiveError(), Comac()):
-        assert not method.possible(problem)
+        assert "needs mode shapes" in (method.obstacle(problem) or "")
     scores = RegionEvidence().scores(problem)
-    assert scores.sum() == pytest.approx(1.0)
-    assert scores[3] > 1 / 10
+    assert scores.sum() <= 1.0
+    assert scores[3] / scores.sum() > 1 / 10
 
 
 def test_a_model_without_damping_is_not_suspected_of_it() -> None:
     from updating import Damping
 
     problem = pose(case_of(soft(3, 0.4).measured, replace(BEAM, damping=Damping())))[0]
-    assert not RegionEvidence().possible(problem, kind="damping")
+    assert "needs damping" in (RegionEvidence().obstacle(problem, kind="damping") or "")
     assert compare_regions(problem).kinds == ("stiffness", "mass")
 
 
@@ -295,7 +295,7 @@ def test_the_order_of_the_points_does_not_matter() -> None:
         constants_sigma=test.constants_sigma[turn],
     )
     turned = pose(case_of(other, BEAM))[0]
-    for method in METHODS:
+    for method in METHODS.values():
         assert method.scores(turned) == pytest.approx(method.scores(problem), rel=1e-3, abs=1e-6)
 
 

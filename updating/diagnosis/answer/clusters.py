@@ -11,10 +11,10 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.answer.result import Place
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import highest
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import BRIDGE_SAMPLE, HEAVIEST_SAMPLES, LEAST_PLACE, LIGHTEST_SAMPLE, SEPARATE_PLACES
 
 SEARCHED = frozenset({"x", "y", "z", "region"})
 """Parameters that say where an effect sits."""
@@ -42,7 +42,13 @@ class Cluster:
     likely_place: int = 0
 
 
-def clusters(problem: SpecimenProblem, explanation: Explanation, channel: str) -> tuple[Cluster, ...]:
+def clusters(
+    problem: SpecimenProblem,
+    explanation: Explanation,
+    channel: str,
+    *,
+    rules: DecisionRules = DEFAULT_RULES,
+) -> tuple[Cluster, ...]:
     """Gather the places of an explanation.
 
     Parameters
@@ -53,6 +59,8 @@ def clusters(problem: SpecimenProblem, explanation: Explanation, channel: str) -
         A candidate with its posterior samples.
     channel : str
         Channel whose effects are asked for; of all effects if none of that channel has a place.
+    rules : DecisionRules
+        What the answer is decided by.
 
     Returns
     -------
@@ -62,22 +70,22 @@ def clusters(problem: SpecimenProblem, explanation: Explanation, channel: str) -
     sampled = sampled_places(problem, explanation, channel)
     if not len(sampled.weights):
         return ()
-    span = _span(problem)
+    apart = rules.separate_places * _span(problem)
     found = [
         cluster
         for likely_place in np.unique(sampled.likely_places).tolist()
-        for cluster in _gather(sampled.of(likely_place), span, likely_place)
+        for cluster in _gather(sampled.of(likely_place), apart, likely_place)
     ]
-    found += _mirrored(problem, explanation, channel, found, span)
-    return tuple(sorted(_stated(found), key=lambda c: -c.weight))
+    found += _mirrored(problem, explanation, channel, found, apart, rules.least_place)
+    return tuple(sorted(_stated(found, rules.least_place), key=lambda c: -c.weight))
 
 
-def _stated(found: list[Cluster]) -> Iterator[Cluster]:
+def _stated(found: list[Cluster], least: float) -> Iterator[Cluster]:
     """Share the weight of each effect among its places, and drop those with little of it."""
     for likely_place in {cluster.likely_place for cluster in found}:
         here = [cluster for cluster in found if cluster.likely_place == likely_place]
         total = sum(cluster.weight for cluster in here)
-        yield from (replace(c, weight=c.weight / total) for c in here if c.weight >= LEAST_PLACE * total)
+        yield from (replace(c, weight=c.weight / total) for c in here if c.weight >= least * total)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +112,14 @@ class Sampled:
         return Sampled(self.places[here], self.weights[here], self.likely_places[here])
 
 
-def sampled_places(problem: SpecimenProblem, explanation: Explanation, channel: str | None = None) -> Sampled:
+def sampled_places(
+    problem: SpecimenProblem,
+    explanation: Explanation,
+    channel: str | None = None,
+    *,
+    most: int = 300,
+    lightest: float = 1e-4,
+) -> Sampled:
     """Return the places of the heaviest samples.
 
     Parameters
@@ -116,9 +131,13 @@ def sampled_places(problem: SpecimenProblem, explanation: Explanation, channel: 
     channel : str, optional
         Channel whose effects are asked for; left out, all but the measurement. Where none of these has a place, all
         effects are.
+    most : int
+        How many of the heaviest are taken: of 300 some 7 lie beyond each end of 95 %.
+    lightest : float
+        Samples with less than this share of the heaviest one's weight are left out [-].
     """
-    heavy = np.argsort(explanation.weights)[::-1][:HEAVIEST_SAMPLES]
-    heavy = heavy[explanation.weights[heavy] > LIGHTEST_SAMPLE * explanation.weights[heavy[0]]]
+    heavy = np.argsort(explanation.weights)[::-1][:most]
+    heavy = heavy[explanation.weights[heavy] > lightest * explanation.weights[heavy[0]]]
     rows = [
         (place, float(explanation.weights[i]) / len(alternatives), likely_place)
         for i in heavy.tolist()
@@ -155,13 +174,16 @@ def _span(problem: SpecimenProblem) -> float:
     return max(spec.length, spec.width if spec.kind != "beam" else 0.0)
 
 
-def _gather(sampled: Sampled, span: float, likely_place: int) -> list[Cluster]:
-    """Gather the samples of one effect: what hangs together is one place."""
-    bold = sampled.weights >= BRIDGE_SAMPLE * sampled.weights.max()
+def _gather(sampled: Sampled, apart: float, likely_place: int, *, bridge: float = 1e-3) -> list[Cluster]:
+    """Gather the samples of one effect: what hangs together is one place.
+
+    Samples with less than ``bridge`` of the heaviest one's weight build no bridges between places.
+    """
+    bold = sampled.weights >= bridge * sampled.weights.max()
     places, weights = sampled.places[bold], sampled.weights[bold]
     labels = np.ones(len(places), dtype=int)
     if len(places) > 1:
-        labels = fcluster(linkage(places, "single"), SEPARATE_PLACES * span, criterion="distance")
+        labels = fcluster(linkage(places, "single"), apart, criterion="distance")
     found = []
     for label in np.unique(labels):
         here, share = places[labels == label], weights[labels == label]
@@ -172,7 +194,12 @@ def _gather(sampled: Sampled, span: float, likely_place: int) -> list[Cluster]:
 
 
 def _mirrored(
-    problem: SpecimenProblem, explanation: Explanation, channel: str, found: list[Cluster], span: float
+    problem: SpecimenProblem,
+    explanation: Explanation,
+    channel: str,
+    found: list[Cluster],
+    apart: float,
+    least: float,
 ) -> list[Cluster]:
     """Look for places on the other side that explain the data as well, which the samples may have missed."""
     best = explanation.best
@@ -181,7 +208,7 @@ def _mirrored(
     for flipped in _flips(problem, explanation):
         peak = highest(problem, explanation.candidate, flipped, rounds=4)
         likely = np.exp(min(peak.marginal.log_likelihood - best.marginal.log_likelihood, 0.0))
-        if likely < LEAST_PLACE:
+        if likely < least:
             continue
         for likely_place, places in enumerate(
             _places_of_sample(problem, explanation, peak.coordinates, channel)
@@ -190,7 +217,7 @@ def _mirrored(
             if likely_place not in leaders:
                 continue
             for place in np.asarray(places, dtype=float):
-                if min(np.linalg.norm(place - k) for k in known) > SEPARATE_PLACES * span:
+                if min(np.linalg.norm(place - k) for k in known) > apart:
                     share = float(likely) * leaders[likely_place].weight
                     more.append(Cluster(place, leaders[likely_place].spread, share, likely_place))
     return more

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import maximise, sensitivities
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import normal_equations
-from updating.thresholds import DETERMINED_SPREAD, REFIT_STEPS, SHORT_STEP, SPLIT_SIGMA, UNSEEN_CURVATURE
+from updating.thresholds import REFIT_STEPS, SHORT_STEP, UNSEEN_CURVATURE
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +64,9 @@ class Split:
         return f"{self.parts} want {self.parameter} at sizes {self.sigma:.2g} sigma apart"
 
 
-def splits(problem: DiagnosisProblem, explanation: Explanation) -> tuple[Split, ...]:
+def splits(
+    problem: DiagnosisProblem, explanation: Explanation, *, rules: DecisionRules = DEFAULT_RULES
+) -> tuple[Split, ...]:
     """Return the parameters that both parts of the data determine and put at different sizes.
 
     Parameters
@@ -72,11 +75,13 @@ def splits(problem: DiagnosisProblem, explanation: Explanation) -> tuple[Split, 
         Test and model.
     explanation : Explanation
         A set of causes at its best.
+    rules : DecisionRules
+        What the answer is decided by.
 
     Returns
     -------
     tuple of Split
-        Those more than ``SPLIT_SIGMA`` apart, the farthest first.
+        Those more than the rules allow apart, the farthest first.
     """
     if not len(explanation.best.coordinates):
         return ()
@@ -85,11 +90,10 @@ def splits(problem: DiagnosisProblem, explanation: Explanation) -> tuple[Split, 
     found = []
     for parts, first, second in _halves(explanation.best.comparison):
         one, two = (_part(problem, explanation, columns, keep) for keep in (first, second))
-        known = (one.spread < DETERMINED_SPREAD) & (two.spread < DETERMINED_SPREAD)
+        known = np.maximum(one.spread, two.spread) < rules.determined_spread
         sigma = np.abs(one.coordinates - two.coordinates) / np.hypot(one.spread, two.spread)
-        found += [
-            Split(names[i], parts, float(sigma[i])) for i in np.flatnonzero(known & (sigma > SPLIT_SIGMA))
-        ]
+        apart = known & (sigma > rules.split_sigma)
+        found += [Split(names[i], parts, float(sigma[i])) for i in np.flatnonzero(apart)]
     return tuple(sorted(found, key=lambda split: -split.sigma))
 
 

@@ -14,7 +14,6 @@ from acquisition.quantities import bare_hertz, hertz, number
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import Comparison
 from updating.models.state import NOMINAL
-from updating.thresholds import NOTABLE_MODE
 
 NAMES = {
     "frequency": "frequency",
@@ -100,14 +99,18 @@ def _sigmas(distance: float, count: int) -> float:
     return float(np.sqrt(chi_square.isf(np.exp(log_tail), 1)))
 
 
-def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str]) -> str:
-    """Say which kind of data of which modes is the furthest off."""
-    if not excess.size or excess.max() < NOTABLE_MODE:
+def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str], *, notable: float = 3.0) -> str:
+    """Say which kind of data of which modes is the furthest off.
+
+    From ``notable`` standard deviations on a mode carries some of the gap: of twenty modes one in eighteen tests has
+    one by chance.
+    """
+    if not excess.size or excess.max() < notable:
         return "No mode stands out: none is further off than noise and tolerances allow."
     worst = int(np.argmax(excess.max(axis=0)))
     column = excess[:, worst]
     order = np.argsort(frequency)
-    band = _band(column[order], max(NOTABLE_MODE, 0.5 * float(column.max())))
+    band = _band(column[order], max(notable, 0.5 * float(column.max())))
     modes = order[band]
     at = frequency[modes]
     what = names[worst]

@@ -9,11 +9,12 @@ from scipy.stats import chi2
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.result import Metric
+from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import DAMPING_REPEATABILITY, SECOND_METRIC, UNSTATED_DAMPING_NOISE
+from updating.thresholds import DAMPING_REPEATABILITY, UNSTATED_DAMPING_NOISE
 
 TOLD_AS: dict[str, Metric] = {
     "frequency": "frequency",
@@ -26,13 +27,15 @@ TOLD_AS: dict[str, Metric] = {
 """The metric of each channel: phases are of the FRFs; the dependence on force and on time has no error of its own."""
 
 
-def metric_of(point: Point) -> Metric:
+def metric_of(point: Point, *, second: float = DEFAULT_RULES.second_metric) -> Metric:
     """Return the metric of the channel that carries the gap, or ``combined`` where two carry it.
 
     Parameters
     ----------
     point : Point
         The nominal model with its tolerances.
+    second : float
+        The rule ``second_metric`` [-].
     """
     surprise = {}
     for name in TOLD_AS:
@@ -43,7 +46,7 @@ def metric_of(point: Point) -> Metric:
     order = sorted(surprise, key=lambda name: surprise[name])
     if not order:
         return "frequency"
-    stated = [TOLD_AS[name] for name in order if surprise[name] <= SECOND_METRIC * surprise[order[0]]]
+    stated = [TOLD_AS[name] for name in order if surprise[name] <= second * surprise[order[0]]]
     return stated[0] if len(set(stated)) == 1 else "combined"
 
 

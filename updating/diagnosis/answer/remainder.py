@@ -9,11 +9,11 @@ import numpy as np
 
 from acquisition.arrays import BoolArray
 from updating.diagnosis.answer.result import Remainder, Shrink
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.likelihood.cells import cells
 from updating.likelihood.comparison import CHANNELS
-from updating.thresholds import DOUBTED_FIT, NOTABLE_REMAINDER
 
 KINDS = {
     "frequency": "frequency",
@@ -27,7 +27,12 @@ KINDS = {
 
 
 def remainder_of(
-    problem: DiagnosisProblem, titles: Sequence[str], best: Explanation, shrink: Shrink
+    problem: DiagnosisProblem,
+    titles: Sequence[str],
+    best: Explanation,
+    shrink: Shrink,
+    *,
+    rules: DecisionRules = DEFAULT_RULES,
 ) -> Remainder:
     """Say what an explanation leaves.
 
@@ -41,6 +46,8 @@ def remainder_of(
         The set of effects.
     shrink : Shrink
         How far it closes the gap.
+    rules : DecisionRules
+        What the answer is decided by.
     """
     point, outliers = best.best, best.candidate.outliers
     comparison = point.comparison
@@ -50,8 +57,8 @@ def remainder_of(
     group = cells(comparison)
     strength = np.sqrt(group.sums(off**2) / np.maximum(group.sums(comparison.of_pairs.astype(float)), 1.0))
     order = [int(i) for i in np.argsort(strength)[::-1] if group.size[i]]
-    significant = best.p_value < DOUBTED_FIT or bool(outliers)
-    carried = [i for i in order if strength[i] > NOTABLE_REMAINDER] if significant else []
+    significant = best.p_value < rules.doubted_fit or bool(outliers)
+    carried = [i for i in order if strength[i] > rules.notable_remainder] if significant else []
     beyond = max(shrink.after**2 - shrink.floor**2, 0.0)
     return Remainder(
         significant,

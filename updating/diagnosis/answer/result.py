@@ -21,10 +21,10 @@ from acquisition.quantities import (
     quantity,
     sigmas,
 )
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.search.search import Searched
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
-from updating.thresholds import CLOSES_NEARLY_ALL, LIKELY_ALL_THE_SAME
 
 Verdict = Literal["named", "class", "unknown", "none"]
 
@@ -231,16 +231,17 @@ class Where(Displayed):
 
 @dataclass(frozen=True)
 class Closed:
-    """Share of the closable gap that closes, with its 95 % interval [%]."""
+    """Share of the closable gap that closes, with its 95 % interval, and what counts as nearly all [%]."""
 
     value: float
     low95: float
     high95: float
+    nearly_all: float = DEFAULT_RULES.closes_nearly_all
 
     @property
     def determined(self) -> bool:
         """Whether the interval leaves out nothing, or nearly all: one that holds both says nothing."""
-        return self.low95 > 0.0 or self.high95 < CLOSES_NEARLY_ALL
+        return self.low95 > 0.0 or self.high95 < self.nearly_all
 
     def __str__(self) -> str:
         return closed(self.value, self.low95, self.high95)
@@ -384,6 +385,8 @@ class Diagnosis(Shown):
         What the most probable set lacks, where the verdict is unknown.
     searched : tuple of Searched
         How many sets of one cause, of two and so on were searched, and how many there are.
+    rules : DecisionRules
+        What the answer was decided by.
     """
 
     title: str
@@ -404,11 +407,12 @@ class Diagnosis(Shown):
     own: Mapping[str, Effect] = field(default_factory=dict)
     lacks: Shortcoming | None = None
     searched: tuple[Searched, ...] = ()
+    rules: DecisionRules = DEFAULT_RULES
 
     @property
     def suspected(self) -> Ranked | None:
         """What would most probably explain the data where some cause is likely, though chance might make the gap."""
-        likely = sum(row.probability for row in self.ranking) >= LIKELY_ALL_THE_SAME
+        likely = sum(row.probability for row in self.ranking) >= self.rules.likely_all_the_same
         return self.ranking[0] if self.verdict == "none" and likely else None
 
     @property

@@ -9,13 +9,13 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.metric import Squares, metric_of, noise_squares, squares
 from updating.diagnosis.answer.result import Closed, HeldPoints, Metric, Shrink
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.held_out import believed, modes_held_out, points_held_out
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.outliers import with_outliers
 from updating.problem.candidate import Candidate
-from updating.thresholds import BOOTSTRAP_DRAWS, CLOSABLE_GAP
 
 
 def shrinkage(
@@ -24,6 +24,8 @@ def shrinkage(
     best: Explanation,
     runner_up: Explanation | None,
     rng: np.random.Generator,
+    *,
+    rules: DecisionRules = DEFAULT_RULES,
 ) -> Shrink:
     """Compare the gap before and after.
 
@@ -39,10 +41,14 @@ def shrinkage(
         The nominal model with its tolerances, the best explanation, and the one behind it.
     rng : Generator
         For the bootstrap.
+    rules : DecisionRules
+        What the answer is decided by.
     """
     outliers = best.candidate.outliers  # what the best takes to be worse than stated counts nowhere
     own = nothing.best.comparison
-    metric = metric_of(replace(nothing.best, comparison=with_outliers(own, outliers)))
+    metric = metric_of(
+        replace(nothing.best, comparison=with_outliers(own, outliers)), second=rules.second_metric
+    )
     plain = problem.at(Candidate(), np.zeros(0))
     odd = np.any([outlier.data(plain) for outlier in outliers], axis=0) if outliers else None
 
@@ -65,7 +71,7 @@ def shrinkage(
         held_runner_up=None if runner_up is None else 100 * held(runner_up).rms,
         held_nuisance=100 * held(nothing).rms,
         floor=100 * floor.rms,
-        closed=closed(before, after, floor, rng),
+        closed=closed(before, after, floor, rng, rules=rules),
         stretch=_stretch(nothing),
         points=_points(problem, nothing, best, plain, metric),
     )
@@ -93,7 +99,15 @@ def _points(
     return HeldPoints(*errors)
 
 
-def closed(before: Squares, after: Squares, floor: Squares, rng: np.random.Generator) -> Closed | None:
+def closed(
+    before: Squares,
+    after: Squares,
+    floor: Squares,
+    rng: np.random.Generator,
+    *,
+    draws: int = 400,
+    rules: DecisionRules = DEFAULT_RULES,
+) -> Closed | None:
     """Return the share of the closable gap that closes, with a bootstrap over modes and over the test's scatter.
 
     Parameters
@@ -102,14 +116,19 @@ def closed(before: Squares, after: Squares, floor: Squares, rng: np.random.Gener
         Errors of the nominal model, on modes held out, and those of a test repeated.
     rng : Generator
         Draws the modes anew, and of each the errors that hitting again would add.
+    draws : int
+        How many: of 400 ten lie beyond each end of the interval.
+    rules : DecisionRules
+        What the answer is decided by.
     """
-    if before.rms < CLOSABLE_GAP * floor.rms or not np.isfinite(after.rms):
+    if before.rms < rules.closable_gap * floor.rms or not np.isfinite(after.rms):
         return None
     value = _share(before, after, floor, np.arange(len(before.count)))
-    draws = [_drawn(before, after, floor, rng) for _ in range(BOOTSTRAP_DRAWS)]
-    low, high = np.nanpercentile(draws, [2.5, 97.5])
+    drawn = [_drawn(before, after, floor, rng) for _ in range(draws)]
+    low, high = np.nanpercentile(drawn, [2.5, 97.5])
     value = min(value, 100.0)
-    return Closed(value, float(min(low, value)), float(max(min(high, 100.0), value)))
+    ends = float(min(low, value)), float(max(min(high, 100.0), value))
+    return Closed(value, *ends, nearly_all=rules.closes_nearly_all)
 
 
 def _share(before: Squares, after: Squares, floor: Squares, modes: np.ndarray) -> float:

@@ -10,35 +10,19 @@ from scipy.stats import chi2
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Shortcoming, Verdict
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Compared, Search
 from updating.problem.candidate import Candidate
-from updating.thresholds import (
-    BEYOND_NOTHING,
-    CHANCE_OF_A_FIT,
-    CLOSE_FITS,
-    CLOSES_NEARLY_ALL,
-    CREDIBLE_SHARE,
-    DETERMINED_SPREAD,
-    DOUBTED_FIT,
-    FAR_BETTER,
-    FEWER_SAMPLES,
-    HEAVIEST_SAMPLES,
-    NEGLIGIBLE_PROBABILITY,
-    PLACES_PER_FORM,
-    RIVAL_SHARE,
-    SIGNIFICANT_GAP,
-    TWO_SIDED,
-    USUAL_SHARE,
-)
+from updating.thresholds import NEGLIGIBLE_PROBABILITY
 
 NAME = "name"
 """Unit of what is a name of the user's own model."""
 
 
-def is_significant(found: Search, p_value: float) -> bool:
+def is_significant(found: Search, p_value: float, *, rules: DecisionRules = DEFAULT_RULES) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
 
     A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it,
@@ -46,13 +30,15 @@ def is_significant(found: Search, p_value: float) -> bool:
     Where that fit is one which chance makes seldom, and the empty set stays credible, there is no gap that is sure.
     """
     rows = [row for row in found.compared if row.names]
-    gains = [row.explanation.log_evidence - _of_nothing(found, row) for row in rows if not row.rejected]
-    if p_value < SIGNIFICANT_GAP or max(gains, default=-np.inf) > FAR_BETTER:
+    gains = [
+        row.explanation.log_evidence - _of_nothing(found, row) for row in rows if not rejected(row, rules)
+    ]
+    if p_value < rules.significant_gap or max(gains, default=-np.inf) > rules.effect_shows_gap:
         return True
     set_aside = max((_of_nothing(found, row) for row in rows), default=-np.inf)
     nothing = found.empty.probability * np.exp(set_aside - found.empty.explanation.log_evidence)
     share = nothing / (nothing + sum(row.probability for row in rows))
-    return bool(share < 1 - CREDIBLE_SHARE and _by_chance(found) < CHANCE_OF_A_FIT)
+    return bool(share < 1 - rules.credible_share and _by_chance(found, rules) < rules.chance_of_a_fit)
 
 
 def _of_nothing(found: Search, row: Compared) -> float:
@@ -60,13 +46,13 @@ def _of_nothing(found: Search, row: Compared) -> float:
     return max(found.empty.explanation.log_evidence, row.without)
 
 
-def _by_chance(found: Search) -> float:
+def _by_chance(found: Search, rules: DecisionRules) -> float:
     """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
-    singles = [row for row in found.compared if len(row.names) == 1 and not row.rejected]
+    singles = [row for row in found.compared if len(row.names) == 1 and not rejected(row, rules)]
     empty = found.empty.explanation
     least = empty.best.marginal.log_likelihood + empty.candidate.log_weight
     chances = [_chance(row, least) for row in singles if row.explanation.samples.shape[1]]
-    return float(min(1.0, PLACES_PER_FORM * len(singles) * min(chances, default=1.0)))
+    return float(min(1.0, rules.places_per_form * len(singles) * min(chances, default=1.0)))
 
 
 def _chance(row: Compared, least: float) -> float:
@@ -80,7 +66,11 @@ def _chance(row: Compared, least: float) -> float:
 
 
 def decide(
-    found: Search, lacks: Shortcoming | None = None, *, significant: bool
+    found: Search,
+    lacks: Shortcoming | None = None,
+    *,
+    significant: bool,
+    rules: DecisionRules = DEFAULT_RULES,
 ) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
     """Return the verdict and the sets of effects it rests on.
 
@@ -92,17 +82,24 @@ def decide(
         What :func:`shortcoming` says.
     significant : bool
         Whether there is a gap.
+    rules : DecisionRules
+        What the answer is decided by.
     """
     if not significant:
         return "none", ()
     if lacks:
         return "unknown", ()
-    sets = _credible(found)
+    sets = _credible(found, rules)
     return ("class", sets) if len(sets) > 1 else ("named", sets)
 
 
 def shortcoming(
-    found: Search, *, comparable: bool = True, closed: float | None = None, left: bool = False
+    found: Search,
+    *,
+    comparable: bool = True,
+    closed: float | None = None,
+    left: bool = False,
+    rules: DecisionRules = DEFAULT_RULES,
 ) -> Shortcoming | None:
     """Return what the most probable set lacks to be an answer, the first that holds; None where it lacks nothing.
 
@@ -116,24 +113,38 @@ def shortcoming(
         What the first set closes of what can be closed, on modes held out; None where there is nothing to close [%].
     left : bool
         Whether the first set leaves more than noise.
+    rules : DecisionRules
+        What the answer is decided by.
     """
     rows = [row for row in found.compared if row.names]
-    if not rows or rows[0].rejected:
+    if not rows or rejected(rows[0], rules):
         return "fit"
-    if left and closed is not None and closed < CLOSES_NEARLY_ALL:
+    if left and closed is not None and closed < rules.closes_nearly_all:
         return "closing"
-    if not _better(found):
+    if not _better(found, rules):
         return "evidence"
-    return None if comparable or len(_credible(found)) > 1 else "partners"
+    return None if comparable or len(_credible(found, rules)) > 1 else "partners"
 
 
-def _better(found: Search) -> list[Compared]:
+def rejected(row: Compared, rules: DecisionRules) -> bool:
+    """Tell whether a set is no answer.
+
+    It fits too badly (sets of several, which have more freedom, must fit better), or only at a size beyond what is
+    plausible.
+    """
+    return bool(row.extreme) or row.p_value < (
+        rules.doubted_fit if len(row.names) > 1 else rules.rejected_fit
+    )
+
+
+def _better(found: Search, rules: DecisionRules) -> list[Compared]:
     """Return the sets that fit and whose evidence is beyond that of the empty one, with the same data set aside."""
-    rows = [row for row in found.compared if row.names and not row.rejected]
-    return [row for row in rows if row.explanation.log_evidence > _of_nothing(found, row) + BEYOND_NOTHING]
+    rows = [row for row in found.compared if row.names and not rejected(row, rules)]
+    least = rules.beyond_nothing
+    return [row for row in rows if row.explanation.log_evidence > _of_nothing(found, row) + least]
 
 
-def _credible(found: Search) -> tuple[tuple[str, ...], ...]:
+def _credible(found: Search, rules: DecisionRules) -> tuple[tuple[str, ...], ...]:
     """Return the fewest sets that hold the certainty asked for, and those that fit as well as the first.
 
     All sets have a share: one whose parameter lies at the end of its range, or which fits badly, is no answer by
@@ -144,59 +155,61 @@ def _credible(found: Search) -> tuple[tuple[str, ...], ...]:
     whole is better by as much as shows a gap: that there is something beside it is the more probable, and not sure.
     What adds to the first a cause that shows in no datum says of the data what the first says, and counts for it.
     """
-    better = _better(found)
+    better = _better(found, rules)
     if not better:
         return ()
     first = better[0]
     rows = [
         row
         for row in found.compared
-        if row.names and row.explanation.log_evidence > row.without + BEYOND_NOTHING
+        if row.names and row.explanation.log_evidence > row.without + rules.beyond_nothing
     ]
     total = sum(row.probability for row in rows)
-    faint = [row for row in rows if row is not first and _adds_nothing(first, row)]
+    faint = [row for row in rows if row is not first and _adds_nothing(first, row, rules)]
     sets: list[tuple[str, ...]] = []
     held = sum(row.probability for row in faint) / max(total, 1e-300)
     for row in rows:
         if row in faint:
             continue
-        alike = row in better and ((_close(first, row) and _as_good(first, row)) or _part_left(first, row))
-        if held < CREDIBLE_SHARE or alike:
+        alike = row in better and (
+            (_close(first, row, rules) and _as_good(first, row, rules)) or _part_left(first, row, rules)
+        )
+        if held < rules.credible_share or alike:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
 
 
-def _adds_nothing(first: Compared, row: Compared) -> bool:
+def _adds_nothing(first: Compared, row: Compared, rules: DecisionRules) -> bool:
     """Tell whether a set is the first with more causes, and fits no better."""
     gain = row.explanation.best.marginal.log_likelihood - first.explanation.best.marginal.log_likelihood
-    return holds(row.names, first.names) and 2 * gain < CLOSE_FITS
+    return holds(row.names, first.names) and 2 * gain < rules.close_fits
 
 
-def _part_left(first: Compared, row: Compared) -> bool:
+def _part_left(first: Compared, row: Compared, rules: DecisionRules) -> bool:
     """Tell whether a set is a part of the first that fits by itself, and not much worse."""
-    part = row is not first and holds(first.names, row.names) and row.as_stated >= DOUBTED_FIT
-    return part and first.explanation.log_evidence - row.explanation.log_evidence < FAR_BETTER
+    part = row is not first and holds(first.names, row.names) and row.as_stated >= rules.doubted_fit
+    return part and first.explanation.log_evidence - row.explanation.log_evidence < rules.whole_beside_part
 
 
-def _as_good(first: Compared, row: Compared) -> bool:
+def _as_good(first: Compared, row: Compared, rules: DecisionRules) -> bool:
     """Tell whether a rival that fits as well stays, though it may be behind by its prior alone.
 
     It does where it is not far behind, or where its fit is no greater an achievement: no more of its parameters are
     determined by the data than of the first's, and none lies at the very end of what is believed.
     """
-    if row.probability > RIVAL_SHARE * first.probability:
+    if row.probability > rules.rival_share * first.probability:
         return True
     apart = not holds(first.names, row.names) and not holds(row.names, first.names)
-    usual = np.abs(row.explanation.best.coordinates - 0.5) < 0.5 * USUAL_SHARE
-    return bool(apart and usual.all() and _determined(row) <= _determined(first))
+    usual = np.abs(row.explanation.best.coordinates - 0.5) < 0.5 * rules.usual_share
+    return bool(apart and usual.all() and _determined(row, rules) <= _determined(first, rules))
 
 
-def _determined(row: Compared) -> int:
+def _determined(row: Compared, rules: DecisionRules) -> int:
     """Return how many parameters of a set the data determine: whose posterior is much narrower than their prior."""
     samples, weights = row.explanation.samples, row.explanation.weights
     mean = weights @ samples
-    return int((np.sqrt(weights @ (samples - mean) ** 2) < DETERMINED_SPREAD).sum())
+    return int((np.sqrt(weights @ (samples - mean) ** 2) < rules.determined_spread).sum())
 
 
 def included(found: Search) -> dict[str, float]:
@@ -208,7 +221,9 @@ def included(found: Search) -> dict[str, float]:
     }
 
 
-def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
+def rank(
+    problem: DiagnosisProblem, found: Search, *, rules: DecisionRules = DEFAULT_RULES
+) -> tuple[Ranked, ...]:
     """Turn what was weighed into rows of the ranking, the empty set left out."""
     rows = [row for row in found.compared if row.names]
     total = sum(row.probability for row in found.compared)
@@ -216,12 +231,12 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
         Ranked(
             effects=row.names,
             probability=row.probability / total,
-            equivalents=tuple(o.names for o in rows if o is not row and _close(row, o)),
+            equivalents=tuple(o.names for o in rows if o is not row and _close(row, o, rules)),
             parameters=estimates(
                 problem,
                 row.explanation,
                 row.extreme,
-                most=_samples_taken(row),
+                most=300 if row.probability > NEGLIGIBLE_PROBABILITY else 40,
             ),
             plausible=not row.extreme,
             p_value=row.p_value,
@@ -237,13 +252,9 @@ def _fixed(explanation: Explanation) -> tuple[Mapping[str, Any], ...]:
     return tuple(form.values for form in explanation.candidate.forms)
 
 
-def _samples_taken(row: Compared) -> int:
-    return HEAVIEST_SAMPLES if row.probability > NEGLIGIBLE_PROBABILITY else FEWER_SAMPLES
-
-
-def _close(a: Compared, b: Compared) -> bool:
+def _close(a: Compared, b: Compared, rules: DecisionRules) -> bool:
     best = [row.explanation.best.marginal.log_likelihood for row in (a, b)]
-    return bool(2 * abs(best[0] - best[1]) < CLOSE_FITS)
+    return bool(2 * abs(best[0] - best[1]) < rules.close_fits)
 
 
 def estimates(
@@ -251,9 +262,24 @@ def estimates(
     explanation: Explanation,
     extreme: Sequence[str] = (),
     *,
-    most: int = HEAVIEST_SAMPLES,
+    most: int = 300,
+    two_sided: float = 1.96,
 ) -> dict[str, ParameterEstimate]:
-    """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
+    """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means.
+
+    Parameters
+    ----------
+    problem : SpecimenProblem or Several
+        Test and model.
+    explanation : Explanation
+        A candidate with its posterior samples.
+    extreme : sequence of str
+        Parameters at an end of their range.
+    most : int
+        How many of the heaviest samples are taken: of 300 some 7 lie beyond each end of 95 %, of 40 one.
+    two_sided : float
+        Standard deviations to either side that hold 95 % of a normal distribution [-].
+    """
     candidate = explanation.candidate
     searched = problem.parameters(candidate)
     keep = np.argsort(explanation.weights)[::-1][:most]
@@ -263,14 +289,18 @@ def estimates(
     result = {}
     for name, parameter in searched:
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
-        scale = TWO_SIDED * parameter.scale_doubt * middle
+        scale = two_sided * parameter.scale_doubt * middle
         low, high = (
             middle - float(np.hypot(middle - low, scale)),
             middle + float(np.hypot(high - middle, scale)),
         )
         aside = parameter.default is not None
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
-    result |= {name: place for name, place in _at_form_places(problem, candidate).items() if name in drawn[0]}
+    result |= {
+        name: place
+        for name, place in _at_form_places(problem, candidate, two_sided).items()
+        if name in drawn[0]
+    }
     labels = [f"{effect.key}.{label}" for effect in candidate.effects for label in effect.labels]
     sensors = [f"{effect.key}.channel" for effect in candidate.effects if effect.of_sensor]
     own = [f"{effect.key}.{name}" for effect in candidate.effects for name in effect.named]
@@ -285,7 +315,9 @@ def estimates(
     return result
 
 
-def _at_form_places(problem: DiagnosisProblem, candidate: Candidate) -> dict[str, ParameterEstimate]:
+def _at_form_places(
+    problem: DiagnosisProblem, candidate: Candidate, two_sided: float
+) -> dict[str, ParameterEstimate]:
     """Return the places that forms fix, an end or a test point, as well known as the test's points are."""
     here = problem.specimens[0]
     spec, found = here.predictor.spec, {}
@@ -293,7 +325,7 @@ def _at_form_places(problem: DiagnosisProblem, candidate: Candidate) -> dict[str
     for effect, form in zip(candidate.effects, candidate.forms, strict=True):
         for axis, size in sizes.items():
             if axis in form.values:
-                at, beside = float(form.values[axis]), TWO_SIDED * here.measured.position_sigma
+                at, beside = float(form.values[axis]), two_sided * here.measured.position_sigma
                 low, high = max(at - beside, 0.0), min(at + beside, size)
                 found[f"{effect.key}.{axis}"] = ParameterEstimate(at, "m", low, high, at_bound=False)
     return found

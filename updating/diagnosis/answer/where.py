@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.clusters import Cluster, clusters, sampled_places
 from updating.diagnosis.answer.contributions import contributions
 from updating.diagnosis.answer.result import LikelyPlace, Place, Verdict, Where, Zone
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
 from updating.effects.box import LIKE
@@ -18,7 +19,7 @@ from updating.effects.measurement.points import channel_point
 from updating.effects.regions import named_places
 from updating.localisation import areas, centres, compare_regions, regions_at
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import CONCERNED_REACH, NEGLIGIBLE_PROBABILITY, TOGETHER_SHARE
+from updating.thresholds import NEGLIGIBLE_PROBABILITY
 
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
 
@@ -27,7 +28,12 @@ LABELS = (".point", ".points", ".channel")
 
 
 def locate(
-    problem: SpecimenProblem, found: Search, *, verdict: Verdict, whole: Search | None = None
+    problem: SpecimenProblem,
+    found: Search,
+    *,
+    verdict: Verdict,
+    whole: Search | None = None,
+    rules: DecisionRules = DEFAULT_RULES,
 ) -> Where:
     """Say where the cause sits, averaged over all explanations by their probability.
 
@@ -41,6 +47,8 @@ def locate(
         With none, no gap, the channel is ``none``; where nothing is named, regions are compared by themselves.
     whole : Search, optional
         What was weighed for several specimens, of which ``found`` holds what acts on this one.
+    rules : DecisionRules
+        What the answer is decided by.
     """
     shares, nothing = _channels(found if whole is None else whole)
     seen = contributions(problem)
@@ -57,11 +65,12 @@ def locate(
             modes=seen.modes,
             band=seen.summary,
         )
-    together = acting_together(shares)
+    together = acting_together(shares, rules=rules)
     top = together[0]
     leader = next((row for row in found.compared if row.names), None)
-    likely_places = () if leader is None else _likely_places(problem, leader, together)
+    likely_places = () if leader is None else _likely_places(problem, leader, together, rules)
     places = tuple(_place(cluster.place) for cluster in likely_places)
+    nearest = _nearest(problem, likely_places, rules.concerned_reach)
     unknown = verdict == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
@@ -69,13 +78,13 @@ def locate(
         channels={**shares, "none": nothing},
         location=places[0] if places else None,
         locations=places,
-        points=_points(problem, leader) or _nearest(problem, likely_places),
+        points=_points(problem, leader) or nearest,
         zones=_zones(problem, probability),
         zones_by="regions" if unknown else "explanations",
         likely_places=tuple(LikelyPlace(_place(c.place), _place(c.spread), c.weight) for c in likely_places),
         modes=seen.modes,
         band=seen.summary,
-        nearest=_nearest(problem, likely_places),
+        nearest=nearest,
         names=_names(leader),
     )
 
@@ -88,20 +97,22 @@ def _names(leader: Compared | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for form in forms for name in named_places(form.values)))
 
 
-def acting_together(shares: Mapping[str, float]) -> tuple[str, ...]:
+def acting_together(shares: Mapping[str, float], *, rules: DecisionRules = DEFAULT_RULES) -> tuple[str, ...]:
     """Return the most probable channel, and those that act with it as halves of one pair, the structure's first.
 
     Parameters
     ----------
     shares : mapping
         Probability of each channel [-].
+    rules : DecisionRules
+        What the answer is decided by.
     """
     most = max(shares[name] for name in CHANNELS)
-    return tuple(name for name in CHANNELS if shares[name] > most - TOGETHER_SHARE)
+    return tuple(name for name in CHANNELS if shares[name] > most - rules.together_share)
 
 
 def _likely_places(
-    problem: SpecimenProblem, leader: Compared, channels: tuple[str, ...]
+    problem: SpecimenProblem, leader: Compared, channels: tuple[str, ...], rules: DecisionRules
 ) -> tuple[Cluster, ...]:
     """Return the places of an explanation in all channels that act together.
 
@@ -113,7 +124,7 @@ def _likely_places(
     near, found = LIKE * problem.predictor.spec.length, list[Cluster]()
     for explanation, share in forms:
         for name in channels:
-            for cluster in clusters(problem, explanation, name):
+            for cluster in clusters(problem, explanation, name, rules=rules):
                 if all(np.linalg.norm(cluster.place - known.place) > near for known in found):
                     found.append(replace(cluster, weight=share * cluster.weight))
     return tuple(found)
@@ -147,7 +158,7 @@ def _points(problem: SpecimenProblem, leader: Compared | None) -> tuple[int, ...
     return tuple(dict.fromkeys(map(int, nodes + sensors)))
 
 
-def _nearest(problem: SpecimenProblem, likely_places: tuple[Cluster, ...]) -> tuple[int, ...]:
+def _nearest(problem: SpecimenProblem, likely_places: tuple[Cluster, ...], reach: float) -> tuple[int, ...]:
     """Return the test nodes at the places."""
     test, spec = problem.measured, problem.predictor.spec
     if not likely_places or not len(test.points):
@@ -156,7 +167,7 @@ def _nearest(problem: SpecimenProblem, likely_places: tuple[Cluster, ...]) -> tu
     away = np.linalg.norm(
         np.stack([c.place[:dim] for c in likely_places])[:, None] - test.points[None], axis=2
     )
-    near = away.min(axis=1) <= CONCERNED_REACH * max(spec.length, spec.width if dim > 1 else 0.0)
+    near = away.min(axis=1) <= reach * max(spec.length, spec.width if dim > 1 else 0.0)
     return tuple(dict.fromkeys(test.nodes[int(i)] for i in away.argmin(axis=1)[near]))
 
 

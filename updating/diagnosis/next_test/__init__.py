@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from updating.diagnosis.answer.result import NextTest, Verdict
+from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial, separation
 from updating.diagnosis.next_test.changed import SameTest
 from updating.diagnosis.next_test.free_free import Unclamped
@@ -23,7 +24,6 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Search
-from updating.thresholds import RIVALS_COMPARED, SEPARATED_SIGMA, TESTS_PROPOSED, WORTHWHILE_SIGMA
 
 MAKERS: tuple[Maker, ...] = (Instruments(), SameTest(), OtherPoints(), Unclamped())
 """All kinds of test that are thought of."""
@@ -35,10 +35,11 @@ class _Found:
     site: Site
     sigmas: dict[tuple[int, int], float]
     first: tuple[int, int] | None = None  # of a named cause: the pair of it and its most probable rival
+    bar: float = DEFAULT_RULES.separated_sigma
 
     @property
     def separated(self) -> tuple[tuple[int, int], ...]:
-        return tuple(pair for pair, sigma in self.sigmas.items() if sigma >= SEPARATED_SIGMA)
+        return tuple(pair for pair, sigma in self.sigmas.items() if sigma >= self.bar)
 
     @property
     def stated(self) -> tuple[tuple[int, int], ...]:
@@ -59,6 +60,10 @@ def propose(
     found: Search,
     sets: tuple[tuple[str, ...], ...],
     verdict: Verdict = "class",
+    *,
+    separated: float = DEFAULT_RULES.separated_sigma,
+    worthwhile: float = 1.0,
+    most: int = 6,
 ) -> tuple[NextTest, ...]:
     """Return the tests that would separate what is left: those that separate all of it first, the cheapest at the top.
 
@@ -73,11 +78,15 @@ def propose(
     verdict : str
         What was decided. A cause that is named is told from its runners-up, to confirm it, the most probable of them
         first.
+    separated : float
+        The rule ``separated_sigma`` [sigma].
+    worthwhile : float
+        A test that separates nothing by so many sigma is not worth a line [sigma].
+    most : int
+        So many tests are proposed: what a reader takes in.
     """
     if verdict == "unknown":
-        return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[
-            :TESTS_PROPOSED
-        ]
+        return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[:most]
     rivals = _rivals(diagnosis_problem, found, sets, verdict)
     if len(rivals) < 2:
         return ()
@@ -86,7 +95,7 @@ def propose(
     if first:
         pairs = [pair for pair in pairs if pair[0] == 0]
     evaluations = [
-        _evaluated(trial, site, rivals, pairs, first)
+        _evaluated(trial, site, rivals, pairs, first, separated)
         for site in _sites(diagnosis_problem)
         for trial in _trials(site, rivals)
     ]
@@ -95,10 +104,10 @@ def propose(
         key = (evaluation.trial.family, evaluation.site.index)
         if key not in best or _worth(evaluation) > _worth(best[key]):
             best[key] = evaluation
-    kept = [evaluation for evaluation in best.values() if evaluation.sigma >= WORTHWHILE_SIGMA]
+    kept = [evaluation for evaluation in best.values() if evaluation.sigma >= worthwhile]
     kept = [evaluation for evaluation in kept if evaluation.confirms] or kept
     kept.sort(key=_order)
-    return tuple(_proposal(evaluation, rivals) for evaluation in kept[:TESTS_PROPOSED])
+    return tuple(_proposal(evaluation, rivals) for evaluation in kept[:most])
 
 
 def _worth(evaluation: _Found) -> tuple[bool, int, float]:
@@ -110,16 +119,22 @@ def _order(evaluation: _Found) -> tuple[bool, int, int, float]:
 
 
 def _rivals(
-    diagnosis_problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, ...], ...], verdict: Verdict
+    diagnosis_problem: DiagnosisProblem,
+    found: Search,
+    sets: tuple[tuple[str, ...], ...],
+    verdict: Verdict,
+    *,
+    most: int = 4,
 ) -> tuple[Rival, ...]:
+    """Return the explanations that are compared: six pairs of four, each predicted under every test."""
     rows = {
         row.names: row.explanation for row in found.compared if row.names and row.explanation.best.possible
     }
-    chosen = list(sets[:RIVALS_COMPARED])
+    chosen = list(sets[:most])
     if verdict == "named" and sets:
         # what holds the named set and more can do all that it does
         others = [names for names in rows if not holds(names, sets[0])]
-        chosen += others[: RIVALS_COMPARED - 2]
+        chosen += others[: most - 2]
     return tuple(Rival(diagnosis_problem, rows[names]) for names in chosen if names in rows)
 
 
@@ -139,6 +154,7 @@ def _evaluated(
     rivals: tuple[Rival, ...],
     pairs: list[tuple[int, int]],
     first: tuple[int, int] | None,
+    bar: float,
 ) -> _Found:
     expected = trial.outcomes(site, rivals)
     sigmas = {
@@ -147,7 +163,7 @@ def _evaluated(
         )
         for i, j in pairs
     }
-    return _Found(trial, site, sigmas, first)
+    return _Found(trial, site, sigmas, first, bar)
 
 
 def _proposal(evaluation: _Found, rivals: tuple[Rival, ...]) -> NextTest:

@@ -10,13 +10,12 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.quantities import quantity
 from updating.diagnosis.next_test.base import Maker, Outcome, Rival, Site, Trial
-from updating.diagnosis.next_test.places import statement, telling_places
+from updating.diagnosis.next_test.places import in_liquid, statement, telling_places
 from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.base import Effect, total_mass
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import KNOWN_MASS, LEVEL_SPAN_GAIN, THIN_FLUID
 
 
 class AddedMass(Repeat):
@@ -81,6 +80,8 @@ class Levels(Trial):
     family = "levels"
     cost = 4
     measure = "hit each point softly and hard, the levels some 1 : 5 apart"
+    gain = 4.0
+    """How many times better a dependence on the force is known once hits span such levels [-]."""
 
     def outcomes(self, site: Site, rivals: tuple[Rival, ...]) -> tuple[Outcome, ...]:
         """Return the slope that each rival expects."""
@@ -91,7 +92,7 @@ class Levels(Trial):
         test = site.problem.measured
         assert test.slope_sigma is not None
         known = test.slope_sigma[np.isfinite(test.slope_sigma)]
-        sigma = 1 / np.sqrt(np.sum(known**-2.0)) / LEVEL_SPAN_GAIN
+        sigma = 1 / np.sqrt(np.sum(known**-2.0)) / self.gain
 
         def slope(coordinates: FloatArray) -> float:
             state = site.diagnosis_problem.place(candidate, coordinates)[site.index]
@@ -109,19 +110,26 @@ class Levels(Trial):
 class SameTest(Maker):
     """The repetitions that a specimen admits."""
 
+    share_of_mass = 0.05
+    """Mass to add, relative to the structure's [-]: moves modes by some per cent, as an effect does, and bends nothing
+    else. Doubled: twice the shift, and a model of the mass that begins to matter."""
+
     def trials(self, site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
         """Give them."""
         problem = site.problem
-        mass = KNOWN_MASS * total_mass(problem.predictor.spec)
+        mass = self.share_of_mass * total_mass(problem.predictor.spec)
         for place in telling_places(problem):
             yield AddedMass(site, place, mass)
         effects = [effect for rival in rivals for effect in rival.explanation.candidate.effects]
         if any(effect.labels for effect in effects):
             yield Again()
         wet = any("in air" in effect.undone_by for effect in effects)
-        around = problem.predictor.environment.fluid_density
-        in_air = around is not None and around < THIN_FLUID
-        if wet and not in_air and problem.baseline is None and not problem.predictor.additions:
+        if (
+            wet
+            and in_liquid(problem) is not False
+            and problem.baseline is None
+            and not problem.predictor.additions
+        ):
             yield InAir()
         if problem.measured.slope is not None:
             yield Levels()

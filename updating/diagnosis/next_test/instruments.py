@@ -12,14 +12,6 @@ from updating.diagnosis.next_test.instrument_reading import InstrumentReading, P
 from updating.effects.base import total_mass
 from updating.effects.structure.mass import sensor_places
 from updating.models.state import State
-from updating.thresholds import (
-    BALANCE_SIGMA,
-    CALIBRATION_SIGMA,
-    CALIPER_SIGMA,
-    DELAY_SIGMA,
-    SENSOR_BALANCE_SIGMA,
-    WINDOW_SIGMA,
-)
 
 PER_LENGTH = {"density": 1.0, "thickness": 1.0, "width": 1.0, "section": 1.0, "area": 1.0}
 """Powers of a beam's or plate's mass per length, whatever the section's name in the model."""
@@ -30,11 +22,14 @@ class Weigh(InstrumentReading):
 
     family = "weigh"
 
+    sigma = 0.001
+    """What weighing reaches: relative 1 sigma, the specimen's other dimensions known as well [-]."""
+
     def __init__(self, *, clamped: bool) -> None:
         """Take note of whether the specimen must come out of a clamp."""
         self.cost = 3 if clamped else 2
         out = "take the specimen out of its clamp and weigh it" if clamped else "weigh the specimen"
-        self.measure = f"{out}, without the sensor, to {100 * BALANCE_SIGMA:g} %"
+        self.measure = f"{out}, without the sensor, to {100 * self.sigma:g} %"
         self.clamped = clamped
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
@@ -42,7 +37,7 @@ class Weigh(InstrumentReading):
         log_mass = sum(p * np.log(state.factors.get(n, 1.0)) for n, p in self._powers.items())
         predictor = site.problem.predictor
         bodies = sum(effect.weight(predictor, values) for effect, values in parts)
-        return np.array([log_mass + np.log1p(bodies / total_mass(predictor.spec))]) / BALANCE_SIGMA
+        return np.array([log_mass + np.log1p(bodies / total_mass(predictor.spec))]) / self.sigma
 
     @property
     def _powers(self) -> dict[str, float]:
@@ -50,7 +45,7 @@ class Weigh(InstrumentReading):
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that mass goes with each of its factors."""
-        return ({n: p / BALANCE_SIGMA for n, p in self._powers.items()},)
+        return ({n: p / self.sigma for n, p in self._powers.items()},)
 
 
 class Caliper(InstrumentReading):
@@ -58,17 +53,20 @@ class Caliper(InstrumentReading):
 
     family = "caliper"
     cost = 1
-    measure = f"measure thickness and width at several places, to {100 * CALIPER_SIGMA:g} %"
+    sigma = 0.002
+    """What a micrometer reaches on thickness and width: relative 1 sigma of the mean of some places [-]."""
+
+    measure = f"measure thickness and width at several places, to {100 * sigma:g} %"
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the logarithms of thickness and width."""
         factors = state.factors
         width = factors.get("width", 1.0) * factors.get("section", 1.0)
-        return np.log([factors.get("thickness", 1.0), width]) / CALIPER_SIGMA
+        return np.log([factors.get("thickness", 1.0), width]) / self.sigma
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that each reads its own factor."""
-        return ({"thickness": 1 / CALIPER_SIGMA}, {"width": 1 / CALIPER_SIGMA, "section": 1 / CALIPER_SIGMA})
+        return ({"thickness": 1 / self.sigma}, {"width": 1 / self.sigma, "section": 1 / self.sigma})
 
 
 class WeighSensor(InstrumentReading):
@@ -76,13 +74,14 @@ class WeighSensor(InstrumentReading):
 
     family = "sensor"
     cost = 2
-    measure = f"weigh the sensor with its mount, to {1000 * SENSOR_BALANCE_SIGMA:g} g"
+    sigma = 1e-4
+    """What weighing a sensor with its mount reaches: 1 sigma [kg]."""
+
+    measure = f"weigh the sensor with its mount, to {1000 * sigma:g} g"
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the mass that the model does not hold."""
-        return np.array(
-            [sum(effect.sensor_weight(values) for effect, values in parts) / SENSOR_BALANCE_SIGMA]
-        )
+        return np.array([sum(effect.sensor_weight(values) for effect, values in parts) / self.sigma])
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that no tolerance enters."""
@@ -94,14 +93,19 @@ class Chain(InstrumentReading):
 
     family = "chain"
     cost = 3
+    sigma = 0.005
+    """What a calibration of the chain with a known free mass reaches: relative 1 sigma [-]."""
+
+    delay_sigma = 5e-6
+    """What the same test says of a delay between the channels: 1 sigma [s]."""
+
     measure = (
-        "hit a known free mass with the same hammer and sensor: "
-        f"calibrates the chain to {100 * CALIBRATION_SIGMA:g} %"
+        f"hit a known free mass with the same hammer and sensor: calibrates the chain to {100 * sigma:g} %"
     )
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return gain and delay."""
-        return np.array([np.log(state.gain) / CALIBRATION_SIGMA, state.delay / DELAY_SIGMA])
+        return np.array([np.log(state.gain) / self.sigma, state.delay / self.delay_sigma])
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that no tolerance enters."""
@@ -110,7 +114,7 @@ class Chain(InstrumentReading):
     def others(self, site: Site, rival: Rival) -> FloatArray:
         """Return that the gain holds what was in doubt about the calibration, the last of the doubts."""
         columns = super().others(site, rival)
-        columns[0, -1] = site.problem.measured.calibration / CALIBRATION_SIGMA
+        columns[0, -1] = site.problem.measured.calibration / self.sigma
         return columns
 
 
@@ -121,9 +125,12 @@ class Settings(InstrumentReading):
     cost = 1
     measure = "look up the exponential window in the analyser's settings, or repeat one point without it"
 
+    sigma = 0.05
+    """What the analyser's settings leave in doubt of a window's decay rate: 1 sigma [1/s]."""
+
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the decay that the records got."""
-        return np.array([state.decay / WINDOW_SIGMA])
+        return np.array([state.decay / self.sigma])
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that no tolerance enters."""

@@ -14,7 +14,6 @@ from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.structure.mass import sensor_places
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
-from updating.thresholds import FURTHER_POINT, UNKNOWN_SHAPE_NOISE
 
 NOT_YET = -1
 """Node number of a point that the test does not have yet."""
@@ -98,7 +97,7 @@ class Shapes(Repeat):
             hit=np.arange(count),
             constants=np.ones((count, modes)),
             unpaired=None,
-            constants_sigma=np.full((count, modes), UNKNOWN_SHAPE_NOISE),
+            constants_sigma=np.full((count, modes), self.unknown_shape_noise),
             hit_errors=None,
             quadrature=None,
             absolute=True,
@@ -115,6 +114,9 @@ def _with(problem: SpecimenProblem, data: Measured) -> SpecimenProblem:
 class OtherPoints(Maker):
     """The further points that a specimen admits, or the shapes it lacks."""
 
+    away = 0.04
+    """Further points are at least this share of the length away from those there are [-]: nearer ones say the same."""
+
     def trials(self, site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
         """Give them."""
         problem = site.problem
@@ -125,5 +127,5 @@ class OtherPoints(Maker):
             yield Shapes(site)
             return
         for place in grid(spec):
-            if np.linalg.norm(test.points - place, axis=1).min() > FURTHER_POINT * spec.length:
+            if np.linalg.norm(test.points - place, axis=1).min() > self.away * spec.length:
                 yield FurtherPoint(site, place)

@@ -9,22 +9,33 @@ from acquisition.quantities import place as written
 from updating.diagnosis.next_test.base import Site
 from updating.models.spec import Spec
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import GRID_ACROSS, GRID_ALONG, PLACES_FOR_A_MASS
 
 
 def grid(spec: Spec) -> FloatArray:
-    """Return places spread over a structure, (n, dim) [m]."""
-    along = np.array(GRID_ALONG)
+    """Return places spread over a structure, (n, dim) [m]: five along it, and on a plate both edges and the middle.
+
+    Torsion shows at the edges, and does not in the middle.
+    """
+    along, across = np.array([0.2, 0.4, 0.6, 0.8, 1.0]), np.array([0.05, 0.5, 0.95])
     if spec.clamped == ("x1",):
         along = 1 - along
     if spec.kind == "beam":
         return (spec.length * along)[:, None]
-    x, y = np.meshgrid(spec.length * along, spec.width * np.array(GRID_ACROSS), indexing="ij")
+    x, y = np.meshgrid(spec.length * along, spec.width * across, indexing="ij")
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
-def telling_places(problem: SpecimenProblem) -> FloatArray:
-    """Return where a mass would act on the modes the most, and the least alike, (n, dim) [m]."""
+def in_liquid(problem: SpecimenProblem, *, thin: float = 10.0) -> bool | None:
+    """Tell whether a specimen is stated to be in a liquid; None where nothing is stated.
+
+    A fluid less dense than ``thin`` [kg/m^3] is a gas: air has 1.2, light oils 700.
+    """
+    around = problem.predictor.environment.fluid_density
+    return None if around is None else around >= thin
+
+
+def telling_places(problem: SpecimenProblem, *, most: int = 4) -> FloatArray:
+    """Return where a mass would act on the modes the most, and the least alike, ``most`` places, (n, dim) [m]."""
     spec, points = problem.predictor.spec, problem.measured.points
     if not len(points):
         if not spec.outlined:
@@ -36,7 +47,7 @@ def telling_places(problem: SpecimenProblem) -> FloatArray:
     moved = np.abs(rows) / np.maximum(np.abs(rows).max(axis=0), 1e-300)
     first = int(np.argmax(moved.sum(axis=1)))
     chosen = [first]
-    while len(chosen) < min(PLACES_FOR_A_MASS, len(points)):
+    while len(chosen) < min(most, len(points)):
         direction = moved[chosen].T
         left = moved - (moved @ np.linalg.pinv(direction).T) @ direction.T
         left[chosen] = 0.0

@@ -18,7 +18,7 @@ from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
-from updating.thresholds import DIFFERENCE_STEP, UNKNOWN_SHAPE_NOISE
+from updating.thresholds import DIFFERENCE_STEP
 
 
 class Repeat(Trial):
@@ -30,6 +30,9 @@ class Repeat(Trial):
 
     same_chain = True
     """Whether calibration, and what else is in doubt about the test so far, is the same in this one."""
+
+    unknown_shape_noise = 0.01
+    """Noise of a modal constant where nothing is known of it, relative to its mode's r.m.s. [-]: of a careful test."""
 
     @abstractmethod
     def problem(self, site: Site) -> SpecimenProblem:
@@ -151,6 +154,6 @@ def _relative(sigma: FloatArray, value: FloatArray) -> float:
 
 def _shape_noise(measured: Measured) -> float:
     if not measured.constants.size:
-        return UNKNOWN_SHAPE_NOISE
+        return Repeat.unknown_shape_noise
     size = np.sqrt(np.mean(measured.constants**2, axis=0))
     return float(np.median(measured.constants_sigma / np.maximum(size, 1e-300)))

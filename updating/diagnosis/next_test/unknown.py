@@ -7,13 +7,13 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.result import NextTest
 from updating.diagnosis.next_test.base import Site
+from updating.diagnosis.next_test.places import in_liquid
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.search import Search
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import FEWEST_POINTS, POINT_THAT_MISSES, POINTS_NAMED, THIN_FLUID
 
 
-def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
+def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...]:
     """Return what to do next where nothing explains the gap.
 
     Parameters
@@ -22,6 +22,8 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
         The specimen.
     found : Search
         What was weighed.
+    fewest : int
+        With fewer points more of them are asked for: shapes of a few points are alike.
     """
     problem = site.problem
     spec, test = problem.predictor.spec, problem.measured
@@ -39,7 +41,7 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
         stated.append(
             "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
         )
-    if len(test.points) < FEWEST_POINTS and spec.outlined:
+    if len(test.points) < fewest and spec.outlined:
         stated.append("measure at five points or more: where shapes miss says where to look")
     if spec.clamped and spec.outlined:
         stated.append("hang the specimen up free and test it: is the gap the clamp's?")
@@ -49,8 +51,7 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
 
 def _another_state(problem: SpecimenProblem) -> str:
     """Return which state of the structure to test as a baseline; not every one can be stripped or dried."""
-    around = problem.predictor.environment.fluid_density
-    if around is not None and around >= THIN_FLUID:
+    if in_liquid(problem):
         return "test the same specimen in air, as a baseline"
     return (
         "test the same structure in another state, as a baseline: before the change in question, or without a part "
@@ -58,8 +59,10 @@ def _another_state(problem: SpecimenProblem) -> str:
     )
 
 
-def _points_that_miss(site: Site, problem: SpecimenProblem, explanation: Explanation) -> list[str]:
-    """Return the numbers of the points at which the constants are off the most."""
+def _points_that_miss(
+    site: Site, problem: SpecimenProblem, explanation: Explanation, *, times: float = 1.7, most: int = 3
+) -> list[str]:
+    """Return the numbers of the points, ``most`` at most, at which the constants are off by ``times`` the r.m.s."""
     test = problem.measured
     if not test.has_shapes:
         return []
@@ -73,8 +76,8 @@ def _points_that_miss(site: Site, problem: SpecimenProblem, explanation: Explana
     roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
     places, group = np.unique(roving, return_inverse=True)
     each = _rms_by(left, group, len(places))
-    bar = POINT_THAT_MISSES * float(np.sqrt(np.mean(left**2)))
-    worst = [i for i in np.argsort(-each)[:POINTS_NAMED].tolist() if each[i] > bar]
+    bar = times * float(np.sqrt(np.mean(left**2)))
+    worst = [i for i in np.argsort(-each)[:most].tolist() if each[i] > bar]
     return [str(test.nodes[places[i]]) for i in worst]
 
 

@@ -6,10 +6,16 @@ import numpy as np
 
 from acquisition.quantities import hertz, percent
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import ANOTHER_STRUCTURE, FEWEST_FOR_A_LONE, LONE_DEVIATIONS, LONE_ERROR
 
 
-def notes_on_doubtful(problem: SpecimenProblem, explained: str = "") -> list[str]:
+def notes_on_doubtful(
+    problem: SpecimenProblem,
+    explained: str = "",
+    *,
+    another: float = 0.5,
+    alone: float = 0.08,
+    deviations: float = 6.0,
+) -> list[str]:
     """Return what ought to be checked before an answer is believed.
 
     Parameters
@@ -18,13 +24,20 @@ def notes_on_doubtful(problem: SpecimenProblem, explained: str = "") -> list[str
         Test and model.
     explained : str, optional
         What the answer says causes the gap; left out, nothing that is sure.
+    another : float
+        R.m.s. error of the frequencies from which test and model are hardly the same structure [-]: a stiffness off
+        by a factor of two and more. Doubled: the warning comes for models in wrong units only.
+    alone, deviations : float
+        A frequency so far from what the others' median error says [-], and so many times the median deviation of the
+        others [-], stands alone. Judged: few effects move one mode only, and none by that much. Doubled: only mistaken
+        modes are still pointed out. Of fewer than four modes none can be said to stand alone: half of them would be.
     """
     test, model = problem.measured, problem.nominal
     error = np.log(model.frequency / test.frequency)
     if not np.isfinite(error).all():
         return []
     notes = []
-    if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER_STRUCTURE:
+    if np.sqrt(np.mean(np.expm1(error) ** 2)) > another:
         if explained:
             return []
         size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
@@ -33,9 +46,9 @@ def notes_on_doubtful(problem: SpecimenProblem, explained: str = "") -> list[str
             "are wrongly paired; check size, material, clamps and band before anything else"
         )
         return notes
-    if len(error) >= FEWEST_FOR_A_LONE:
+    if len(error) >= 4:
         away = np.abs(error - np.median(error))
-        bar = max(LONE_ERROR, LONE_DEVIATIONS * float(np.median(away)))
+        bar = max(alone, deviations * float(np.median(away)))
         settle = "a slip, or a mode mistaken for another? Nothing should be concluded before that is settled"
         if explained:
             settle = f"{explained} explains it, and rests on it: see that it is no slip and no other mode"

@@ -8,7 +8,7 @@ from updating.effects.base import Effect, EitherSign, Parameter, Values
 from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.thresholds import LARGEST_TREND, UNREMARKABLE_TREND
+from updating.thresholds import UNREMARKABLE_TREND
 
 
 class Drift(Effect):
@@ -33,7 +33,9 @@ class Drift(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the rate."""
         why = "from what no test is free of, 2 K on metals, to 15 K on plastics; of either sign, uniform in its log"
-        bounds = -LARGEST_TREND, LARGEST_TREND
+        # identification believes shifts of 2 % to either side of the middle; plastics are ten times as soft to
+        # temperature as metals. Doubled: faint drifts need a little more evidence
+        bounds = -0.04, 0.04
         return (EitherSign("rate", "-", *bounds, why, signed=True, least=UNREMARKABLE_TREND),)
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
