@@ -16,7 +16,8 @@ leave traces that no independent noise has. These kinds of test are simulated fr
   by up to 2 % at its median. Poles alone follow it: there are no products of modes;
 * ``absorber``: ``beam`` with an absorber on it, tuned near one of its modes: a mode of 1 to 5 % beside sharp ones;
 * ``averaged``: FRFs averaged over blocks with a Hann window, the force random, lines as wide as the peaks;
-* ``coarse``: FRFs on lines half as far apart as peaks are wide up to twice, half of them smoothed over three lines.
+* ``coarse``: FRFs on lines half as far apart as peaks are wide up to twice, half of them smoothed over three lines;
+* ``fading``: ``averaged`` with a force that gets weak from 0.6 of the band's end on; half of them with coherence.
 
     python benchmarks/bench_hammer.py --kinds beam plate roving --seeds 50
 

@@ -15,7 +15,7 @@ from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import synthesise, uniform_weights
 from identification.fit.fit import Fitted, fit_candidates
 from identification.fit.noise.lags import contradicted
-from identification.fit.noise.leakage import follows, leaked
+from identification.fit.noise.leakage import leaked
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
 from identification.fit.search.completion import COARSE, SHORT
 
@@ -52,11 +52,11 @@ def fit_shaped(
 ) -> Fitted:
     """Fit candidates with the line shape that explains the FRFs best, no window included unless one is stated.
 
-    A shape that nobody states counts if the fit with it explains more than the one without, each pole and term at its
-    price (Schwarz, Ann. Stat. 6 (1978) 461-464), and the number of averages, which the law of leakage has beside the
-    levels of the noise, too: two poles under a half-power width apart imitate the line shape. The candidates, and
-    the poles of the fit without a shape, start those with one, imitations made one. A shape that the lags of the FRFs
-    contradict does not count, however badly they fit without.
+    A shape that nobody states counts if the fit with it explains more than the one without, each pole, each term and
+    each number of the law of the noise at its price (Schwarz, Ann. Stat. 6 (1978) 461-464): two poles under a
+    half-power width apart imitate the line shape. The candidates, and the poles of the fit without a shape, start those
+    with one, imitations made one. A shape that the lags of the FRFs contradict does not count, however badly they fit
+    without.
     Beside a course only a stated window counts: what a course leaves on peaks passes for errors of averages.
 
     Parameters
@@ -203,21 +203,23 @@ def _of_few(frfs: FrfSet, poles: ComplexArray) -> tuple[tuple[float, float], Fit
     fit = refine(frfs, poles, uniform_weights(frfs), iterations=SHORT, tolerance=COARSE)
     weights, misfit = search_weights(frfs, fit), fit.cost
     fit = refine(frfs, fit.poles, weights, iterations=SHORT, tolerance=COARSE)
-    residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
-    variance = noise_weights(frfs, residual, absorbed, leaked(frfs, fit.poles, fit.linear.residues))[1]
-    return (misfit, _criterion(frfs, fit, residual, variance)), fit
+    price = _criterion(frfs, fit, left_over(frfs, fit), absorbed_by(frfs, fit, weights))
+    return (misfit, price), fit
 
 
 def _price(fitted: Fitted) -> float:
     """Return Schwarz's criterion with the noise that the fit leaves: less is better [-]."""
-    return _criterion(fitted.frfs, fitted.fit, fitted.residual, fitted.variance)
+    return _criterion(fitted.frfs, fitted.fit, fitted.residual, fitted.absorbed)
 
 
-def _criterion(frfs: FrfSet, fit: Fit, residual: ComplexArray, variance: FloatArray) -> float:
+def _criterion(frfs: FrfSet, fit: Fit, residual: ComplexArray, absorbed: FloatArray) -> float:
+    """Return Schwarz's criterion, the noise of all shapes estimated from residuals: coherence would favour some."""
+    way = leaked(frfs, fit.poles, fit.linear.residues)
+    weights, variance, _ = noise_weights(replace(frfs, coherence=None), residual, absorbed, way)
     n_frf = len(residual)
     smoothed = frfs.line_shape is not None and frfs.line_shape.kind == "smoothed"
     common = slice(None) if smoothed else slice(1, -1)  # the lines that every shape is fitted to
     residual, variance = residual[:, common], variance[:, common]
     lack = float(np.sum(np.log(variance) + np.abs(residual) ** 2 / variance))
-    unknowns = len(fit.poles) * (2 * n_frf + 2) + n_frf * len(fit.linear.powers) + follows(frfs)
+    unknowns = len(fit.poles) * (2 * n_frf + 2) + n_frf * len(fit.linear.powers) + weights.unknowns
     return float(2.0 * lack + unknowns * np.log(2 * residual.size))

@@ -8,7 +8,7 @@ import numpy as np
 
 from hammer.absorbed import absorber_test
 from hammer.changing import hardening_test, odd_mounting_test, softening_test
-from hammer.on_lines import averaged_test, coarse_test
+from hammer.on_lines import averaged_test, coarse_test, fading_test
 from hammer.plain import array_test, beam_test, plate_test, roving_test
 from hammer.records import force_window_test, long_test
 from hammer.setups import Setup
@@ -26,5 +26,6 @@ DRAWN: dict[str, Callable[[np.random.Generator], Setup]] = {
     "absorber": absorber_test,
     "averaged": averaged_test,
     "coarse": coarse_test,
+    "fading": fading_test,
 }
 """How tests of each kind are drawn. The place in the table is part of the seed: further kinds are added at its end."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +18,18 @@ Made = tuple[FrfSet, NDArray[np.bool_]]
 
 
 def averaged(
-    system: ModalSystem, true: NDArray[np.complex128], band: tuple[float, float], rng: np.random.Generator
+    system: ModalSystem,
+    true: NDArray[np.complex128],
+    band: tuple[float, float],
+    rng: np.random.Generator,
+    *,
+    order: int = 0,
+    coherent: bool = False,
 ) -> Made:
     """Average FRFs of a random force over half-overlapping blocks with a Hann window.
 
-    The middle mode's half-power band is one to three lines wide.
+    The middle mode's half-power band is one to three lines wide. Of some order, a filter makes the force weak from 0.6
+    of the band's end on, and noise of the response is ten times as strong; coherence may go with the FRFs.
     """
     width = float(np.median(-true.real)) / np.pi
     duration = float(rng.uniform(1.0, 3.0)) / width
@@ -30,6 +38,8 @@ def averaged(
     length = samples * (BLOCKS + 4)  # the first blocks wait for the steady state
     s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
     force = np.fft.rfft(rng.standard_normal(length)) * (np.abs(s) < np.pi * rate)
+    if order:
+        force /= np.sqrt(1 + (np.abs(s) / (2 * np.pi * 0.6 * band[1])) ** (2 * order))
     window = np.hanning(samples + 1)[:-1]
     kept = slice(max(1, int(np.ceil(band[0] * duration))), int(band[1] * duration) + 1)
 
@@ -39,13 +49,18 @@ def averaged(
         starts = np.arange(4 * samples, length - samples + 1, samples // 2)
         return np.array([np.fft.rfft(window * wave[a : a + samples])[kept] for a in starts])
 
-    push, points = spectra(force, 0.0), []
+    push, points, coherence = spectra(force, 0.0), [], []
+    power = np.sum(np.abs(push) ** 2, axis=0)
     for point in range(len(system.points)):
         h = system.receptance(s[1:], point)[0] * s[1:] ** 2
-        motion = spectra(np.append(0.0, h) * force, 1e-3)
-        points.append(np.sum(motion * push.conj(), axis=0) / np.sum(np.abs(push) ** 2, axis=0))
+        motion = spectra(np.append(0.0, h) * force, 1e-2 if order else 1e-3)
+        points.append(np.sum(motion * push.conj(), axis=0) / power)
+        coherence.append(np.abs(points[-1]) ** 2 * power / np.sum(np.abs(motion) ** 2, axis=0))
     lines = np.arange(kept.start, kept.stop) / duration
-    frfs = FrfSet(lines, np.array(points), (system.responses[0],) * len(points), system.points)
+    known = np.array(coherence) if coherent else None
+    frfs = FrfSet(
+        lines, np.array(points), (system.responses[0],) * len(points), system.points, coherence=known
+    )
     return frfs, _above(system, 3.0 / duration, band)
 
 
@@ -76,6 +91,12 @@ def _above(system: ModalSystem, margin: float, band: tuple[float, float]) -> NDA
 def averaged_test(rng: np.random.Generator) -> Setup:
     """Draw a beam whose FRFs are averaged over windowed blocks."""
     return replace(beam_test(rng), without_hits=averaged)
+
+
+def fading_test(rng: np.random.Generator) -> Setup:
+    """Draw the same with a force that gets weak along the lines; every other set has coherence."""
+    order, coherent = int(rng.choice([3, 4])), bool(rng.random() < 0.5)
+    return replace(beam_test(rng), without_hits=partial(averaged, order=order, coherent=coherent))
 
 
 def coarse_test(rng: np.random.Generator) -> Setup:

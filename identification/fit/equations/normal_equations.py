@@ -29,11 +29,14 @@ class Weights:
     fade : float
         How far the noise fades over the record, w T, see :mod:`identification.fit.noise.window_shaped`; 0 if it
         is steady and the lines' errors are independent [-].
+    unknowns : float
+        Numbers beside one per FRF that the law of the noise took from what a fit leaves [-].
     """
 
     level: FloatArray
     lines: FloatArray
     fade: float = 0.0
+    unknowns: float = 0.0
 
     @property
     def full(self) -> FloatArray:

@@ -17,12 +17,6 @@ from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.form import FORMS
 from acquisition.frfs.frf import FrfSet
 
-_ROUNDS = 6
-_PEAK = 6.0
-"""Power over the expected one by which a value counts at the most [-], as in `identification.fit.noise.common`."""
-_STEP = 1e-3
-"""Least ratio of a variance to the one of the round before [-]."""
-
 
 def follows(frfs: FrfSet) -> bool:
     """Tell whether errors of FRFs follow this law: averages of blocks whose variance did not come with them."""
@@ -60,36 +54,6 @@ def leaked(frfs: FrfSet, poles: ComplexArray, residues: ComplexArray) -> Complex
     way = residues @ slope.T
     size = np.sqrt(np.maximum(power, 0.0)) * np.abs(frfs.laplace) ** FORMS.index(frfs.form)
     return np.asarray(size * way / np.maximum(np.abs(way), np.finfo(float).tiny))
-
-
-def levelled(power: FloatArray, law: FloatArray, level: FloatArray) -> tuple[FloatArray, float]:
-    """Return variances a + b law, a for each FRF and b for all, and b: (n_frf, n_lines) [unit squared], [-].
-
-    Values far above what is expected of them count as if they were less, so that a mode that is missing in the fit
-    does not pass for noise.
-
-    Parameters
-    ----------
-    power : (n_frf, n_lines) array
-        Power of what a fit leaves [unit squared].
-    law : (n_frf, n_lines) array
-        N times the variance by leakage [unit squared].
-    level : (n_frf,) array
-        Start of a [unit squared].
-    """
-    a = level[:, None]
-    strong = law > 0.01 * law.max(axis=1, keepdims=True)
-    b = float(np.median(power[strong] / law[strong])) / np.log(2.0) if strong.any() else 0.0
-    guess = a + b * law
-    for _ in range(_ROUNDS):
-        w = 1.0 / guess**2
-        seen = np.minimum(power, _PEAK * guess)
-        a = np.maximum(np.sum(w * (seen - b * law), axis=1) / w.sum(axis=1), _STEP * a[:, 0])[:, None]
-        b = max(
-            float(np.sum(w * law * (seen - a)) / max(np.sum(w * law**2), np.finfo(float).tiny)), _STEP * b
-        )
-        guess = a + b * law
-    return guess, b
 
 
 def shared(leaked: ComplexArray, residual: ComplexArray, variance: FloatArray) -> float:

@@ -15,6 +15,9 @@ from identification.fit.noise.differences import power_of_differences
 
 _CHANCE = 1e-4
 _ROUNDS = 3
+_SCORINGS = 6
+_PEAK = 6.0
+"""Power over the expected one by which a value counts at the most [-], as in `identification.fit.noise.common`."""
 _STEP = 1e-3  # a round lowers a variance to this part of what it was at the most; what follows from twice is the same
 _WINDOW = 48  # lines over which a local variance is averaged at the least
 _QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
@@ -35,6 +38,14 @@ def quiet_floor(values: ComplexArray) -> FloatArray:
     """Return the smallest variance worth believing, per FRF, shape (n_frf, 1) [unit squared]."""
     power = np.mean(squared(values), axis=1, keepdims=True)
     return np.asarray(_QUIET**2 * np.maximum(power, 1e-12 * power.max()))
+
+
+def usual(ratio: FloatArray) -> FloatArray:
+    """Return the mean of each FRF's powers over the expected ones, whatever single lines have, (n_frf, 1) [-]."""
+    mean = ratio.mean(axis=1, keepdims=True)
+    for _ in range(_SCORINGS):
+        mean = np.minimum(ratio, _PEAK * mean).mean(axis=1, keepdims=True)
+    return np.asarray(mean)
 
 
 def local_mean(power: FloatArray, window: int) -> FloatArray:
@@ -81,7 +92,8 @@ def from_residual(
 
     The simplest law the residuals support is taken: white in each FRF; one colour common to all; each its own
     colour; or, where that is more likely, white noise of the response and noise of the force, which grows with
-    the FRF. Degrees of freedom the fit absorbed are given back line by line.
+    the FRF; or noise of the force beside noise of one colour. Degrees of freedom the fit absorbed are given back line
+    by line.
 
     Parameters
     ----------
@@ -110,28 +122,88 @@ def from_residual(
     colour = np.log(local / level[:, None])
     common = np.log(np.mean(local / level[:, None], axis=0, keepdims=True))
     if n_lines < 2 * window or np.mean(colour**2) < 2.5 / window:
-        lines = np.ones((1, n_lines))
+        lines, more = np.ones((1, n_lines)), 0.0
     elif np.mean((colour - common) ** 2) < 2.5 / window:
-        lines = np.exp(-common)
+        lines, more = np.exp(-common), n_lines / window - 1.0
     else:
-        lines = np.exp(-colour)
-    weights = Weights(1.0 / level, lines)
+        lines, more = np.exp(-colour), len(power) * (n_lines / window - 1.0)
+    weights = Weights(1.0 / level, lines, unknowns=more)
     power /= free
     grown = np.maximum(_levelled(power, squared(model), _over_all_lines), floor)
-    of_grown = _likelihood(power, grown)
-    gain = of_grown - _likelihood(power, level[:, None])
-    better = of_grown > _likelihood(power, 1.0 / weights.full)
+    of_grown = likelihood(power, grown)
+    gain = of_grown - likelihood(power, level[:, None])
+    better = of_grown > likelihood(power, 1.0 / weights.full)
     if better and 2.0 * gain > stats.chi2.isf(_CHANCE, len(power)):
         mean = np.exp(np.mean(np.log(grown), axis=1))
-        weights = Weights(1.0 / mean, mean[:, None] / grown)
+        weights = Weights(1.0 / mean, mean[:, None] / grown, unknowns=float(len(power)))
+    both, numbers = of_two_sources(power, squared(model), level)
+    both = np.maximum(both, floor)
+    gain = 2.0 * (likelihood(power, both) - likelihood(power, 1.0 / weights.full))
+    if gain > (numbers - weights.unknowns) * np.log(2 * power.size):
+        mean = np.exp(np.mean(np.log(both), axis=1))
+        weights = Weights(1.0 / mean, mean[:, None] / both, unknowns=numbers)
     return weights, 1.0 / weights.full
+
+
+def of_two_sources(power: FloatArray, law: FloatArray, level: FloatArray) -> tuple[FloatArray, float]:
+    """Return variances a c + b law, (n_frf, n_lines), and how many numbers they have beside one per FRF [-].
+
+    Each FRF has its own a, all have one b, at most one: what a single block or hit would have. The first part has a
+    colour c, common to all FRFs, as where the force gets weaker along the lines, if that is worth its price by
+    Schwarz's criterion (Ann. Stat. 6 (1978) 461-464).
+
+    Parameters
+    ----------
+    power : (n_frf, n_lines) array
+        Power of what a fit leaves [unit squared].
+    law : (n_frf, n_lines) array
+        What the second part is proportional to [unit squared].
+    level : (n_frf,) array
+        Start of a [unit squared].
+    """
+    n_lines = power.shape[1]
+    window = window_length(n_lines)
+    even = _scored(power, law, level, n_lines)
+    if n_lines < 2 * window:
+        return even, 1.0
+    coloured, more = _scored(power, law, level, window), n_lines / window - 1.0
+    gain = 2.0 * (likelihood(power, coloured) - likelihood(power, even))
+    return (coloured, 1.0 + more) if gain > more * np.log(2 * power.size) else (even, 1.0)
+
+
+def _scored(power: FloatArray, law: FloatArray, level: FloatArray, window: int) -> FloatArray:
+    """Return variances a c + b law by scoring, c the same over all lines or a mean over a window of fewer.
+
+    Values far above what is expected of them count as if they were less, so that a mode that is missing in the fit
+    does not pass for noise.
+    """
+    tiny, n_lines = np.finfo(float).tiny, power.shape[1]
+    a, c = level[:, None], np.ones((1, n_lines))
+    strong = law > 0.01 * law.max(axis=1, keepdims=True)
+    b = float(np.median(power[strong] / law[strong])) / np.log(2.0) if strong.any() else 0.0
+    for _ in range(_SCORINGS):
+        guess = a * c + b * law
+        w = 1.0 / guess**2
+        seen = np.minimum(power, _PEAK * guess)
+        a = np.maximum(
+            (w * c * (seen - b * law)).sum(axis=1)[:, None] / (w * c**2).sum(axis=1)[:, None], _STEP * a
+        )
+        if window < n_lines:
+            along, size = np.sum(w * a * (seen - b * law), axis=0), np.sum(w * a**2, axis=0)
+            c = np.maximum(
+                local_mean(along[None, :], window) / np.maximum(local_mean(size[None, :], window), tiny),
+                _STEP * c,
+            )
+        b = max(float(np.sum(w * law * (seen - a * c)) / max(np.sum(w * law**2), tiny)), _STEP * b)
+        b = min(b, 1.0)
+    return a * c + b * law
 
 
 def _over_all_lines(values: FloatArray) -> FloatArray:
     return np.asarray(np.mean(values, axis=1, keepdims=True))
 
 
-def _likelihood(power: FloatArray, variance: FloatArray) -> float:
+def likelihood(power: FloatArray, variance: FloatArray) -> float:
     """Return the logarithm of the likelihood of circular Gaussian residuals of such power."""
     logarithms = float(np.sum(np.log(variance))) * power.size / variance.size
     return -logarithms - float(np.sum(power / variance))

@@ -51,9 +51,10 @@ def _of_leakage(frfs: FrfSet, power: FloatArray, leaked: ComplexArray) -> Weight
     """Return weights of FRFs whose noise is leakage, and noise of their own that is the same at all lines."""
     floor = levels.quiet_floor(frfs.values)
     start = np.maximum(np.median(power, axis=1), floor[:, 0])
-    variance = np.maximum(leakage.levelled(power, np.abs(leaked) ** 2, start)[0], floor)
+    variance, more = levels.of_two_sources(power, np.abs(leaked) ** 2, start)
+    variance = np.maximum(variance, floor)
     level = 1.0 / np.exp(np.mean(np.log(variance), axis=1))
-    return Weights(level, 1.0 / (variance * level[:, None]))
+    return Weights(level, 1.0 / (variance * level[:, None]), unknowns=more)
 
 
 def _stated(frfs: FrfSet, residual: ComplexArray) -> FloatArray | None:
@@ -91,8 +92,8 @@ def noise_weights(
         weights, variance = levels.from_residual(residual, absorbed, floor, frfs.values - residual)
         return replace(weights, fade=fade), variance, False
     if frfs.variance is None:
-        excess = np.mean(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, 0.02), axis=1)
-        known = np.maximum(known * excess[:, None], floor)
+        excess = levels.usual(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, _LEAST_FREE))
+        known = np.maximum(known * excess, floor)
     level = 1.0 / np.exp(np.mean(np.log(known), axis=1))
     return Weights(level, 1.0 / (known * level[:, None]), fade), known, True
 

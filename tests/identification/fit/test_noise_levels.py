@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from identification_cases import column, lines, structure
 
 from identification import identify
@@ -64,6 +65,41 @@ def test_colours_of_their_own_are_found(rng):
         colour * dirt(rng, (2, 3000)), np.zeros((1, 3000)), np.zeros((2, 1)), resonances(2)
     )
     assert weights.lines.shape == (2, 3000)
+
+
+def test_noise_of_the_force_beside_a_colour(rng):
+    model, colour = resonances(6), np.linspace(0.2, 3.0, 3000)
+    sigma = np.hypot(colour, 0.02 * np.abs(model))
+    weights, variance = levels.from_residual(
+        sigma * dirt(rng, (6, 3000)), np.zeros((1, 3000)), np.zeros((6, 1)), model
+    )
+    assert weights.unknowns == pytest.approx(3000 / 250)
+    middle = slice(300, 2700)
+    np.testing.assert_allclose(variance[:, middle], (sigma**2)[:, middle], rtol=0.35)
+
+
+def test_a_colour_that_is_not_there_is_not_worth_its_price(rng):
+    level, law = np.array([[1.0], [4.0], [0.1]]), np.abs(resonances(3)) ** 2
+    variance = level**2 + 0.01 * law
+    power = variance * np.abs(dirt(rng, (3, 3000))) ** 2
+    found, numbers = levels.of_two_sources(power, law, level[:, 0])
+    assert numbers == 1.0
+    np.testing.assert_allclose(found, variance, rtol=0.15)
+
+
+def test_errors_are_at_most_those_of_one_block(rng):
+    """Averages of less than a block do not exist: what errs by more than one would is no leakage."""
+    law = np.abs(resonances(3)) ** 2
+    power = (1.0 + 100.0 * law) * np.abs(dirt(rng, (3, 3000))) ** 2
+    found, _ = levels.of_two_sources(power, law, np.ones(3))
+    peak = law[0].argmax()
+    assert found[0, peak] - found[0, peak + 100] < 1.01 * (law[0, peak] - law[0, peak + 100])
+
+
+def test_a_line_without_force_does_not_raise_the_noise_of_all(rng):
+    ratio = 0.01 * np.abs(dirt(rng, (3, 2000))) ** 2
+    ratio[:, -1] = 1e3
+    np.testing.assert_allclose(levels.usual(ratio), 0.01, rtol=0.1)
 
 
 def test_coherence_alone_is_a_relative_weight(rng):
