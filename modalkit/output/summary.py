@@ -93,6 +93,13 @@ def _unknown(diagnosis: Diagnosis) -> str:
         return f"the gap is real; {first} comes nearest, closes too little of it and leaves more than noise"
     if diagnosis.lacks == "one size":
         return f"the gap is real; {first} comes nearest, and parts of the data want another size of it each"
+    if diagnosis.lacks == "library" and diagnosis.something_else is not None:
+        other = diagnosis.something_else
+        would = ", ".join(map(str, other.changes[:3]))
+        return (
+            f"the gap is real; a cause that is in no library explains it with {probability(other.probability)} against "
+            f"{first}" + (f"; it would change {would}" if would else "")
+        )
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
     return (
         f"{first} would explain the gap, and is not {odds} as that tolerances or noise are worse than stated"

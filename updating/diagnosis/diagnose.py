@@ -18,6 +18,7 @@ from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.answer.shrink import shrinkage
 from updating.diagnosis.answer.verdict import decide, included, is_significant, rank, shortcoming
 from updating.diagnosis.answer.where import locate
+from updating.diagnosis.generic.something_else import something_else
 from updating.diagnosis.next_test import propose
 from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
@@ -146,8 +147,16 @@ def _diagnose(
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
     stated = leader if significant else found.empty.explanation
     left = remainder_of(problem, titles, stated, shrink, rules=rules)
-    closed = None if shrink.closed is None else shrink.closed.value
-    lacks = shortcoming(found, comparable=comparable, closed=closed, left=left.significant, rules=rules)
+    _stage(progress, "weighing a cause that is in no library")
+    other = something_else(problem, found, rules) if significant else None
+    lacks = shortcoming(
+        found,
+        comparable=comparable,
+        closed=None if shrink.closed is None else shrink.closed.value,
+        left=left.significant or (other is not None and other.beside > rules.something_left),
+        unnamed=0.0 if other is None else other.probability,
+        rules=rules,
+    )
     verdict, sets = decide(found, lacks, significant=significant, rules=rules)
     inconsistent = splits(problem, leader, rules=rules) if verdict == "named" else ()
     if inconsistent:
@@ -181,6 +190,7 @@ def _diagnose(
         own=own,
         lacks=lacks if verdict == "unknown" else None,
         searched=found.searched,
+        something_else=other,
         rules=rules,
     )
 

@@ -107,7 +107,7 @@ class CauseEntry(TypedDict):
         "one set; several these data cannot separate; a gap that no set explains; no gap",
     ]
     lacks: Annotated[
-        Literal["fit", "closing", "evidence", "partners", "one size"] | None,
+        Literal["fit", "closing", "evidence", "partners", "one size", "library"] | None,
         "what the first row lacks to be an answer; null unless `verdict` is `unknown`",
     ]
     effects: Annotated[Sequence[str], "union of `sets`"]
@@ -199,6 +199,28 @@ class NextTestEntry(TypedDict):
     ]
 
 
+class RegionalChangeEntry(TypedDict):
+    """What a cause that is in no library would change in one region."""
+
+    region: Annotated[str, "its name; empty for what is in no region"]
+    property: Annotated[Literal["stiffness", "mass"], "what is changed"]
+    percent: Annotated[float, "by how much, the most probable value [%]"]
+    low95: Annotated[float, "lower end of the 95 % interval [%]"]
+    high95: Annotated[float, "upper end [%]"]
+
+
+class SomethingElseEntry(TypedDict):
+    """A cause that is in no library: fields of stiffness and mass, of damping and of gains."""
+
+    probability: Annotated[float, "that it is the cause and no set is, given that there is one [-]"]
+    log_bayes_factor: Annotated[
+        float, "of such a cause beside the first row; above 0 something is left [-]", Of("beside")
+    ]
+    changes: Annotated[
+        Sequence[RegionalChangeEntry], "what it would change of the structure, what is surest first"
+    ]
+
+
 class SearchedEntry(TypedDict):
     """How much of what there is was searched."""
 
@@ -219,6 +241,10 @@ class DiagnosisDocument(TypedDict):
     cause: Annotated[CauseEntry, "which effects make it"]
     shrink: Annotated[ShrinkEntry, "how far the gap shrinks once they are in the model"]
     remainder: Annotated[RemainderEntry | None, "what the first row leaves beyond noise; null without gap"]
+    something_else: Annotated[
+        SomethingElseEntry | None,
+        "a cause that is in no library; null without gap, or where it was not weighed",
+    ]
     included: Annotated[Mapping[str, float], "probability of each effect that it is among the causes [-]"]
     next_test: Annotated[Sequence[NextTestEntry], "what to measure next, best first"]
     searched: Annotated[Sequence[SearchedEntry], "how many sets of causes were searched"]

@@ -28,10 +28,10 @@ from updating.effects.obstacles import Obstacle
 
 Verdict = Literal["named", "class", "unknown", "none"]
 
-Shortcoming = Literal["fit", "closing", "evidence", "partners", "one size"]
+Shortcoming = Literal["fit", "closing", "evidence", "partners", "one size", "library"]
 """What the most probable set lacks where none is an answer: it is rejected, closes too little and leaves more than
-noise, is not clearly more likely than tolerances further off, most modes have no partner, or parts of the data want
-another size of it each."""
+noise, is not clearly more likely than tolerances further off, most modes have no partner, parts of the data want
+another size of it each, or a cause that is in no library may as well be it."""
 
 Metric = Literal["frequency", "damping", "frf", "combined"]
 Place = tuple[float, float, float]
@@ -325,6 +325,54 @@ class Remainder(Displayed):
 
 
 @dataclass(frozen=True)
+class RegionalChange:
+    """What a cause without a name would change in one region.
+
+    Parameters
+    ----------
+    region : str
+        Its name; empty for what is in no region.
+    property : {"stiffness", "mass"}
+        What is changed.
+    percent, low95, high95 : float
+        By how much, and the ends of the 95 % interval [%].
+    """
+
+    region: str
+    property: Literal["stiffness", "mass"]
+    percent: float
+    low95: float
+    high95: float
+
+    def __str__(self) -> str:
+        of = f"of {self.region}" if self.region else "outside all regions"
+        return f"{self.property} {of} {self.percent:+.2g} % ({self.low95:+.2g} to {self.high95:+.2g})"
+
+
+@dataclass(frozen=True)
+class SomethingElse(Displayed):
+    """A cause that is in no library: fields of stiffness and mass, of damping and of gains, weighed as the sets are.
+
+    Parameters
+    ----------
+    probability : float
+        That it is the cause, and no set of the library, given that there is one [-].
+    beside : float
+        Logarithm of the Bayes factor of such a cause beside the first set: above 0 something is left [-].
+    changes : tuple of RegionalChange
+        What it would change of the structure where it is the cause, what is surest first; those of less than two
+        standard deviations are left out.
+    """
+
+    probability: float
+    beside: float
+    changes: tuple[RegionalChange, ...]
+
+    def _headline(self) -> str:
+        return f"{probability(self.probability)}: {', '.join(map(str, self.changes[:3])) or 'nothing of the structure'}"
+
+
+@dataclass(frozen=True)
 class NextTest(Displayed):
     """A measurement, what it separates, and by how many sigma.
 
@@ -385,6 +433,8 @@ class Diagnosis(Shown):
         What the most probable set lacks, where the verdict is unknown.
     searched : tuple of Searched
         How many sets of one cause, of two and so on were searched, and how many there are.
+    something_else : SomethingElse, optional
+        A cause that is in no library beside those that are; None where there is no gap, or it was not weighed.
     rules : DecisionRules
         What the answer was decided by.
     """
@@ -407,6 +457,7 @@ class Diagnosis(Shown):
     own: Mapping[str, Effect] = field(default_factory=dict)
     lacks: Shortcoming | None = None
     searched: tuple[Searched, ...] = ()
+    something_else: SomethingElse | None = None
     rules: DecisionRules = DEFAULT_RULES
 
     @property

@@ -12,7 +12,7 @@ SHARES = frozenset(
     {
         "significant_gap", "chance_of_a_fit", "rejected_fit", "doubted_fit", "credible_share", "rival_share",
         "determined_spread", "usual_share", "likely_all_the_same", "second_metric", "separate_places", "least_place",
-        "concerned_reach", "together_share",
+        "something_else_prior", "concerned_reach", "together_share",
     }
 )  # fmt: skip
 """Rules that are probabilities or shares, between 0 and 1."""
@@ -51,6 +51,12 @@ class DecisionRules:
         [%]. Doubling what is left out of it, to 80, names a part of the cause as if it were nearly all.
     beyond_nothing : float
         By how much the log evidence of an answer exceeds that of no effect at all [-]: odds of 20.
+    something_else_prior : float
+        Prior of a cause that is in no library [-]: of the blind trials so many have one. Judged. Doubled: a set must be
+        twice as likely to be named.
+    something_left : float
+        Logarithm of the Bayes factor of such a cause beside the first set from which on more than noise is left [-]:
+        odds of 3. Doubled: odds of 9.
     credible_share : float
         Probability that the sets of an answer hold together [-]. The contract's.
     rival_share : float
@@ -109,6 +115,8 @@ class DecisionRules:
     doubted_fit: float = DOUBTED_FIT
     closes_nearly_all: float = 90.0
     beyond_nothing: float = 3.0
+    something_else_prior: float = 0.15
+    something_left: float = 1.1
     credible_share: float = 0.95
     rival_share: float = 0.02
     determined_spread: float = 0.1

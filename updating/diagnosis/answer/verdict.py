@@ -99,6 +99,7 @@ def shortcoming(
     comparable: bool = True,
     closed: float | None = None,
     left: bool = False,
+    unnamed: float = 0.0,
     rules: DecisionRules = DEFAULT_RULES,
 ) -> Shortcoming | None:
     """Return what the most probable set lacks to be an answer, the first that holds; None where it lacks nothing.
@@ -113,6 +114,8 @@ def shortcoming(
         What the first set closes of what can be closed, on modes held out; None where there is nothing to close [%].
     left : bool
         Whether the first set leaves more than noise.
+    unnamed : float
+        Probability that the cause is in no library [-].
     rules : DecisionRules
         What the answer is decided by.
     """
@@ -123,6 +126,8 @@ def shortcoming(
         return "closing"
     if not _better(found, rules):
         return "evidence"
+    if unnamed > 1 - rules.credible_share:
+        return "library"
     return None if comparable or len(_credible(found, rules)) > 1 else "partners"
 
 

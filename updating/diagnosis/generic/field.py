@@ -1,0 +1,156 @@
+"""The evidence of a cause without a name, beside no cause or beside a set of them, and what it would be.
+
+The field has a Gaussian prior, so that it is integrated out as the nuisances are. Its amplitudes and its length are
+summed over a grid. Stiffness and mass are linearised about their most probable values, in a few rounds. The parameters
+of the set stay free: their sensitivities are nuisances with and without the field, and what that leaves out of their
+own evidence is alike in both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.generic.columns import PROPERTIES, Columns, columns, correlations
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.fit import sensitivities
+from updating.likelihood.gaussian import Marginal, marginal
+from updating.problem.specimen import SpecimenProblem
+
+AMPLITUDES = (0.02, 0.1, 0.5)
+"""Standard deviations of the logarithms of stiffness and mass in a region [-]."""
+
+LENGTHS = (0.05, 0.3)
+"""Lengths over which they go together [share of the span]: a place by itself, and a gradient."""
+
+LOSSES = (0.0, 0.3, 1.0)
+"""Standard deviations of ln zeta, mode by mode [-]."""
+
+GAINS = (0.0, 0.03, 0.3)
+"""Standard deviations of ln gain, channel by channel [-]."""
+
+ROUNDS = 3
+"""Most linearisations about the most probable field."""
+
+AT_REST = 0.02
+"""The field is at rest when no logarithm of a factor moves by more [-]."""
+
+FARTHEST = 1.5
+"""Farthest that a field is linearised at [-]: a factor of 4.5."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One choice of what a field changes, and by how much.
+
+    Parameters
+    ----------
+    properties : tuple of str
+        Which of ``PROPERTIES``.
+    amplitude, loss, gain : float
+        Standard deviations [-].
+    length : int
+        Which of ``LENGTHS``.
+    """
+
+    properties: tuple[str, ...] = ()
+    amplitude: float = 0.0
+    length: int = 0
+    loss: float = 0.0
+    gain: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """A cause without a name beside a set of causes.
+
+    Parameters
+    ----------
+    log_factor : float
+        Logarithm of the Bayes factor: with the field over without [-].
+    kind : Kind
+        The most probable choice.
+    changes : (2, r) array
+        Most probable logarithm of the factor of each of ``PROPERTIES`` in each region, and in what is in none, the
+        last [-].
+    sigma : (2, r) array
+        Their standard deviations [-].
+    """
+
+    log_factor: float
+    kind: Kind
+    changes: FloatArray
+    sigma: FloatArray
+
+
+def beside(problem: SpecimenProblem, explanation: Explanation) -> Field:
+    """Weigh a cause without a name beside a set of causes; beside none it is the cause.
+
+    Parameters
+    ----------
+    problem : SpecimenProblem
+        Test and model.
+    explanation : Explanation
+        The set, or no effect.
+    """
+    factors = correlations(problem.predictor.spec, LENGTHS)
+    free = np.nan_to_num(sensitivities(problem, explanation.candidate, explanation.best))
+    field = np.zeros((len(PROPERTIES), len(factors[0])))
+    plain, best = -np.inf, Field(-np.inf, Kind(), field, field)
+    for once in range(ROUNDS):
+        here = columns(problem, explanation, field)
+        found = {kind: _marginal(here, kind, factors, free) for kind in _kinds(here, len(factors))}
+        without = found.pop(Kind()).log_likelihood
+        plain = plain if once else without
+        total = float(np.logaddexp.reduce([one.log_likelihood for one in found.values()])) - np.log(
+            len(found)
+        )
+        top = max(found, key=lambda kind: found[kind].log_likelihood)
+        moved, sigma = _most_probable(here, top, factors, free)
+        if total - plain > best.log_factor:
+            best = Field(total - plain, top, moved, sigma)
+        if np.abs(moved - field).max() < AT_REST:
+            break
+        field = moved
+    return best
+
+
+def _kinds(here: Columns, lengths: int) -> list[Kind]:
+    """Return all choices that the data may tell of, no field at all among them."""
+    structure = [Kind()]
+    for properties in (("E",), ("density",), PROPERTIES):
+        structure += [Kind(properties, *one) for one in product(AMPLITUDES, range(lengths))]
+    losses = LOSSES if here.loss.shape[1] else LOSSES[:1]
+    gains = GAINS if here.gain.shape[1] else GAINS[:1]
+    return [replace(one, loss=loss, gain=gain) for one in structure for loss in losses for gain in gains]
+
+
+def _nuisances(here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray) -> list[FloatArray]:
+    """Return what a field of one kind changes per standard deviation, stiffness and mass first, and all nuisances."""
+    parts = [kind.amplitude * here.regions[name] @ factors[kind.length] for name in kind.properties]
+    parts += [kind.loss * here.loss] * bool(kind.loss) + [kind.gain * here.gain] * bool(kind.gain)
+    return [*parts, here.comparison.nuisance, free]
+
+
+def _marginal(here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray) -> Marginal:
+    """Integrate a field of one kind out, and the parameters (n, k) of the set beside it."""
+    return marginal(replace(here.comparison, nuisance=np.hstack(_nuisances(here, kind, factors, free))))
+
+
+def _most_probable(
+    here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the most probable logarithms of the factors, and their standard deviations, (2, r) each [-]."""
+    found = _marginal(here, kind, factors, free)
+    whole = np.hstack(_nuisances(here, kind, factors, free))
+    precision = np.eye(whole.shape[1]) + (whole.T / here.comparison.noise(found.scale)) @ whole
+    spread, lower = np.linalg.inv(precision), kind.amplitude * factors[kind.length]
+    field, sigma = np.zeros((2, len(PROPERTIES), len(lower)))
+    for k, name in enumerate(kind.properties):
+        own = slice(k * len(lower), (k + 1) * len(lower))
+        field[PROPERTIES.index(name)] = lower @ found.shift[own]
+        sigma[PROPERTIES.index(name)] = np.sqrt(np.einsum("ij,jk,ik->i", lower, spread[own, own], lower))
+    return np.clip(field, -FARTHEST, FARTHEST), sigma

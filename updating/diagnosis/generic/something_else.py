@@ -1,0 +1,69 @@
+"""How probable it is that the cause is in no library, and what that cause would be."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from scipy.special import expit
+
+from updating.diagnosis.answer.result import RegionalChange, SomethingElse
+from updating.diagnosis.answer.rules import DecisionRules
+from updating.diagnosis.generic.field import Field, beside
+from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.prior import log_prior
+from updating.diagnosis.search.search import Search
+from updating.models.spec import Spec
+from updating.problem.specimen import SpecimenProblem
+
+NAMES: tuple[Literal["stiffness"], Literal["mass"]] = ("stiffness", "mass")
+"""What each of ``PROPERTIES`` is called in an answer."""
+
+SHOWN_SIGMA = 2.0
+"""Changes that are less sure are not listed [sigma]."""
+
+
+def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRules) -> SomethingElse | None:
+    """Weigh a cause without a name against all sets, and beside the first of them.
+
+    Parameters
+    ----------
+    problem : SpecimenProblem or Several
+        Test and model.
+    found : Search
+        What was weighed.
+    rules : DecisionRules
+        The prior of such a cause.
+
+    Returns
+    -------
+    SomethingElse or None
+        None of several specimens, and of matrices without regions: no field of theirs is known.
+    """
+    sets = [row for row in found.compared if row.names]
+    if not isinstance(problem, SpecimenProblem) or not problem.predictor.spec.regions or not sets:
+        return None
+    alone, first = beside(problem, found.empty.explanation), beside(problem, sets[0].explanation)
+    evidence = found.empty.explanation.log_evidence + alone.log_factor + np.log(rules.something_else_prior)
+    own = sets[0].explanation.log_evidence + log_prior(len(sets[0].names), found.examined)
+    others = own + np.log(sum(row.probability for row in sets) / sets[0].probability)
+    return SomethingElse(
+        float(expit(evidence - others)), first.log_factor, _changes(problem.predictor.spec, alone)
+    )
+
+
+def _changes(spec: Spec, field: Field) -> tuple[RegionalChange, ...]:
+    """Return what a field changes of the structure beyond doubt, what is surest first."""
+    names = [*(region.name for region in spec.regions), ""]
+    sure = np.abs(field.changes) / np.maximum(field.sigma, 1e-12)
+    shown = [(k, i) for k, i in np.argwhere(sure >= SHOWN_SIGMA).tolist()]
+    return tuple(
+        RegionalChange(names[i], NAMES[k], *_percent(field.changes[k, i], field.sigma[k, i]))
+        for k, i in sorted(shown, key=lambda one: -sure[one])
+    )
+
+
+def _percent(value: float, sigma: float) -> tuple[float, float, float]:
+    """Return a change by its logarithm and the ends of its 95 % interval [%]."""
+    low, middle, high = 100 * np.expm1(value + 1.96 * sigma * np.array([-1.0, 0.0, 1.0]))
+    return float(middle), float(low), float(high)
