@@ -302,9 +302,11 @@ narrow peak gets two thirds as many samples."""
 SAMPLE_FREEDOM = 5
 """Degrees of freedom of the t-distributions that samples are drawn from: heavy tails, a finite variance."""
 
-MOST_AT_ONCE, MOST_SAMPLES = 256, 1024
-"""Most samples drawn in a round, and in all, each a prediction. Doubled: evidence errs by 0.7 of what it did, at twice
-the time."""
+MOST_AT_ONCE = 256
+"""Most samples drawn in a round, each a prediction. Doubled: more are drawn than are needed."""
+
+MOST_SAMPLES = 1024
+"""Most samples drawn in all. Doubled: evidence errs by 0.7 of what it did, in twice the time."""
 
 DRAFT_SAMPLES = 512
 """Samples drawn for a draft, which cost no predictions."""

@@ -11,7 +11,7 @@ import numpy as np
 from acquisition.quantities import number, p_value, percent, place, probability
 from modalkit.output.forms import numbers_a_form
 from updating import Diagnosis
-from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
+from updating.diagnosis.answer.result import NextTest, Ranked, Shrink, SomethingElse
 from updating.diagnosis.answer.verdict import NAME
 from updating.diagnosis.answer.where import CHANNELS, acting_together
 from updating.effects import Lack, Twin, in_a_set, twin_of
@@ -93,17 +93,20 @@ def _unknown(diagnosis: Diagnosis) -> str:
         return f"the gap is real; {first} comes nearest, closes too little of it and leaves more than noise"
     if diagnosis.lacks == "one size":
         return f"the gap is real; {first} comes nearest, and parts of the data want another size of it each"
-    if diagnosis.lacks == "library" and diagnosis.something_else is not None:
-        other = diagnosis.something_else
-        would = ", ".join(map(str, other.changes[:3]))
-        return (
-            f"the gap is real; a cause that is in no library explains it with {probability(other.probability)} against "
-            f"{first}" + (f"; it would change {would}" if would else "")
-        )
+    if diagnosis.lacks == "library":
+        return f"the gap is real; {first} comes nearest, and {_of_no_library(diagnosis.something_else)}"
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
     return (
         f"{first} would explain the gap, and is not {odds} as that tolerances or noise are worse than stated"
     )
+
+
+def _of_no_library(other: SomethingElse | None) -> str:
+    """Say how likely a cause is that no library has, and what it would change."""
+    if other is None:
+        return "a cause that is in no library may as well be it"
+    would = f": {', '.join(map(str, other.changes[:3]))}" if other.changes else ""
+    return f"a cause that is in no library has {probability(other.probability)}{would}"
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from updating.diagnosis.search.fit import Peak, Point
-from updating.diagnosis.search.sampling import about, effective, weighed
+from updating.diagnosis.search.sampling import about, draw_posterior, effective
 from updating.likelihood.gaussian import Marginal
 
 
@@ -35,7 +35,7 @@ def test_the_evidence_of_a_known_integral(k: int, off: float) -> None:
     sigma = 0.03
     truth = multivariate_normal(np.full(k, 0.5), sigma**2 * np.eye(k))
     start = about([peak(np.eye(k) * 9 / sigma**2, 0.5 + off * sigma)])
-    found = weighed(lambda u: np.atleast_1d(truth.logpdf(u)), start, min(32 * 2**k, 256))
+    found = draw_posterior(lambda u: np.atleast_1d(truth.logpdf(u)), start, min(32 * 2**k, 256))
     assert effective(found.weights) > (100 if k < 5 else 20)
     assert found.log_evidence == pytest.approx(0.0, abs=0.25)  # 2.5 standard deviations of 100 samples
     mean = found.weights @ found.samples
@@ -47,7 +47,7 @@ def test_the_evidence_of_a_known_integral(k: int, off: float) -> None:
 def test_two_maxima_of_which_one_was_missed() -> None:
     """A second maximum, wide enough for samples of the prior to meet it, holds its half of the evidence."""
     parts = [multivariate_normal(np.full(2, at), 0.04**2 * np.eye(2)) for at in (0.25, 0.75)]
-    found = weighed(
+    found = draw_posterior(
         lambda u: np.logaddexp(parts[0].logpdf(u), parts[1].logpdf(u)) - np.log(2),
         about([peak(np.eye(2) / 0.04**2, 0.25)]),
         128,

@@ -24,9 +24,6 @@ from updating.problem.specimen import SpecimenProblem
 PROPERTIES = ("E", "density")
 """Factors of the regions that a field changes: stiffness and mass."""
 
-STEP = 0.02
-"""Step of the differences [-]: between round-off and curvature of ln f in the logarithm of a factor."""
-
 
 @dataclass(frozen=True, eq=False)
 class Columns:
@@ -50,7 +47,9 @@ class Columns:
     gain: FloatArray
 
 
-def columns(problem: SpecimenProblem, explanation: Explanation, field: FloatArray) -> Columns:
+def columns(
+    problem: SpecimenProblem, explanation: Explanation, field: FloatArray, *, step: float = 0.02
+) -> Columns:
     """Return the data beside an explanation at its best, and what a field about one that is there may change.
 
     Parameters
@@ -61,6 +60,8 @@ def columns(problem: SpecimenProblem, explanation: Explanation, field: FloatArra
         The set of effects.
     field : (2, r) array
         Logarithms of the factors of ``PROPERTIES`` in each region, and in what is in none, the last [-].
+    step : float
+        Step of the differences [-]: between round-off and curvature of ln f.
     """
     candidate, best = explanation.candidate, explanation.best
     (state,) = problem.place(candidate, best.coordinates)
@@ -82,23 +83,26 @@ def columns(problem: SpecimenProblem, explanation: Explanation, field: FloatArra
     slopes = np.zeros((*field.shape, len(here.residual)))
     for k, region in np.ndindex(*field.shape):
         moved = field.copy()
-        moved[k, region] += STEP
-        slopes[k, region] = (here.residual - compared(moved).residual) / STEP
+        moved[k, region] += step
+        slopes[k, region] = (here.residual - compared(moved).residual) / step
     slopes = np.nan_to_num(slopes)
     carried = replace(here, residual=here.residual + np.einsum("kr,krn->n", field, slopes))
     regions = {name: slopes[k].T for k, name in enumerate(PROPERTIES)}
     return Columns(carried, regions, np.eye(len(here.residual))[:, here.of("damping")], _gain(problem, here))
 
 
-def _gain(problem: SpecimenProblem, here: Comparison) -> FloatArray:
-    """Return the change of the data by the logarithm of each channel's gain, none of two channels or fewer (n, c)."""
+def _gain(problem: SpecimenProblem, here: Comparison, *, fewest: int = 3) -> FloatArray:
+    """Return the change of the data by the logarithm of each channel's gain, (n, c).
+
+    None of fewer channels than ``fewest``: theirs is the level of the test or of a mode.
+    """
     rows, constants = (
         np.flatnonzero(here.of("frf")),
         [q for q in problem.quantities if isinstance(q, Constants)],
     )
     source = here.source[rows]
     channels = np.unique(source[source >= 0])
-    if not constants or len(channels) < FEWEST_CHANNELS:
+    if not constants or len(channels) < fewest:
         return np.zeros((len(here.residual), 0))
     predicted = (problem.measured.constants / constants[0].scale).ravel() - here.residual[rows]
     found = np.zeros((len(here.residual), len(channels)))
@@ -106,16 +110,12 @@ def _gain(problem: SpecimenProblem, here: Comparison) -> FloatArray:
     return found
 
 
-FEWEST_CHANNELS = 3
-"""Fewer channels have no gain that is not the level of the test or of a mode."""
-
-
-def correlations(spec: Spec, lengths: Sequence[float]) -> list[FloatArray]:
+def correlations(spec: Spec, lengths: Sequence[float], *, rounding: float = 1e-6) -> list[FloatArray]:
     """Return lower factors (r, r) of the correlation among regions, one for each length [share of the span].
 
     Two regions have that of a squared exponential of their distance (Rasmussen and Williams 2006, Gaussian Processes
     for Machine Learning, Eq. 4.9). Regions of imported matrices have no place and are independent, and so is what is in
-    no region, the last.
+    no region, the last. ``rounding`` keeps those of close regions positive definite [-].
     """
     count = len(spec.regions)
     if not spec.outlined:
@@ -124,9 +124,5 @@ def correlations(spec: Spec, lengths: Sequence[float]) -> list[FloatArray]:
     far = cdist(middles, middles) / spec.length
     found = np.tile(np.eye(count + 1), (len(lengths), 1, 1))
     for lower, one in zip(found, lengths, strict=True):
-        lower[:-1, :-1] = np.linalg.cholesky(np.exp(-0.5 * (far / one) ** 2) + ROUNDING * np.eye(count))
+        lower[:-1, :-1] = np.linalg.cholesky(np.exp(-0.5 * (far / one) ** 2) + rounding * np.eye(count))
     return list(found)
-
-
-ROUNDING = 1e-6
-"""What keeps a correlation of close regions positive definite [-]."""

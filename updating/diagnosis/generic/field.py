@@ -20,26 +20,34 @@ from updating.diagnosis.search.fit import sensitivities
 from updating.likelihood.gaussian import Marginal, marginal
 from updating.problem.specimen import SpecimenProblem
 
-AMPLITUDES = (0.02, 0.1, 0.5)
-"""Standard deviations of the logarithms of stiffness and mass in a region [-]."""
 
-LENGTHS = (0.05, 0.3)
-"""Lengths over which they go together [share of the span]: a place by itself, and a gradient."""
+@dataclass(frozen=True)
+class Grid:
+    """What is summed over, and how a field is linearised.
 
-LOSSES = (0.0, 0.3, 1.0)
-"""Standard deviations of ln zeta, mode by mode [-]."""
+    Parameters
+    ----------
+    amplitudes : tuple of float
+        Standard deviations of the logarithms of stiffness and mass in a region [-].
+    lengths : tuple of float
+        Lengths over which they go together: a place by itself, and a gradient [share of the span].
+    losses, gains : tuple of float
+        Standard deviations of ln zeta mode by mode, and of ln gain channel by channel [-].
+    rounds : int
+        Most linearisations about the most probable field.
+    at_rest : float
+        The field is at rest when no logarithm of a factor moves by more [-].
+    farthest : float
+        Farthest from the model that a field is linearised at [-]: a factor of 4.5.
+    """
 
-GAINS = (0.0, 0.03, 0.3)
-"""Standard deviations of ln gain, channel by channel [-]."""
-
-ROUNDS = 3
-"""Most linearisations about the most probable field."""
-
-AT_REST = 0.02
-"""The field is at rest when no logarithm of a factor moves by more [-]."""
-
-FARTHEST = 1.5
-"""Farthest that a field is linearised at [-]: a factor of 4.5."""
+    amplitudes: tuple[float, ...] = (0.02, 0.1, 0.5)
+    lengths: tuple[float, ...] = (0.05, 0.3)
+    losses: tuple[float, ...] = (0.0, 0.3, 1.0)
+    gains: tuple[float, ...] = (0.0, 0.03, 0.3)
+    rounds: int = 3
+    at_rest: float = 0.02
+    farthest: float = 1.5
 
 
 @dataclass(frozen=True)
@@ -53,7 +61,7 @@ class Kind:
     amplitude, loss, gain : float
         Standard deviations [-].
     length : int
-        Which of ``LENGTHS``.
+        Which length of the grid.
     """
 
     properties: tuple[str, ...] = ()
@@ -86,7 +94,7 @@ class Field:
     sigma: FloatArray
 
 
-def beside(problem: SpecimenProblem, explanation: Explanation) -> Field:
+def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = Grid()) -> Field:
     """Weigh a cause without a name beside a set of causes; beside none it is the cause.
 
     Parameters
@@ -95,14 +103,16 @@ def beside(problem: SpecimenProblem, explanation: Explanation) -> Field:
         Test and model.
     explanation : Explanation
         The set, or no effect.
+    grid : Grid
+        What is summed over.
     """
-    factors = correlations(problem.predictor.spec, LENGTHS)
+    factors = correlations(problem.predictor.spec, grid.lengths)
     free = np.nan_to_num(sensitivities(problem, explanation.candidate, explanation.best))
     field = np.zeros((len(PROPERTIES), len(factors[0])))
     plain, best = -np.inf, Field(-np.inf, Kind(), field, field)
-    for once in range(ROUNDS):
+    for once in range(grid.rounds):
         here = columns(problem, explanation, field)
-        found = {kind: _marginal(here, kind, factors, free) for kind in _kinds(here, len(factors))}
+        found = {kind: _marginal(here, kind, factors, free) for kind in _kinds(here, grid, len(factors))}
         without = found.pop(Kind()).log_likelihood
         plain = plain if once else without
         total = float(np.logaddexp.reduce([one.log_likelihood for one in found.values()])) - np.log(
@@ -110,21 +120,22 @@ def beside(problem: SpecimenProblem, explanation: Explanation) -> Field:
         )
         top = max(found, key=lambda kind: found[kind].log_likelihood)
         moved, sigma = _most_probable(here, top, factors, free)
+        moved = np.clip(moved, -grid.farthest, grid.farthest)
         if total - plain > best.log_factor:
             best = Field(total - plain, top, moved, sigma)
-        if np.abs(moved - field).max() < AT_REST:
+        if np.abs(moved - field).max() < grid.at_rest:
             break
         field = moved
     return best
 
 
-def _kinds(here: Columns, lengths: int) -> list[Kind]:
+def _kinds(here: Columns, grid: Grid, lengths: int) -> list[Kind]:
     """Return all choices that the data may tell of, no field at all among them."""
     structure = [Kind()]
     for properties in (("E",), ("density",), PROPERTIES):
-        structure += [Kind(properties, *one) for one in product(AMPLITUDES, range(lengths))]
-    losses = LOSSES if here.loss.shape[1] else LOSSES[:1]
-    gains = GAINS if here.gain.shape[1] else GAINS[:1]
+        structure += [Kind(properties, *one) for one in product(grid.amplitudes, range(lengths))]
+    losses = grid.losses if here.loss.shape[1] else grid.losses[:1]
+    gains = grid.gains if here.gain.shape[1] else grid.gains[:1]
     return [replace(one, loss=loss, gain=gain) for one in structure for loss in losses for gain in gains]
 
 
@@ -153,4 +164,4 @@ def _most_probable(
         own = slice(k * len(lower), (k + 1) * len(lower))
         field[PROPERTIES.index(name)] = lower @ found.shift[own]
         sigma[PROPERTIES.index(name)] = np.sqrt(np.einsum("ij,jk,ik->i", lower, spread[own, own], lower))
-    return np.clip(field, -FARTHEST, FARTHEST), sigma
+    return field, sigma

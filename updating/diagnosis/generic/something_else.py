@@ -19,9 +19,6 @@ from updating.problem.specimen import SpecimenProblem
 NAMES: tuple[Literal["stiffness"], Literal["mass"]] = ("stiffness", "mass")
 """What each of ``PROPERTIES`` is called in an answer."""
 
-SHOWN_SIGMA = 2.0
-"""Changes that are less sure are not listed [sigma]."""
-
 
 def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRules) -> SomethingElse | None:
     """Weigh a cause without a name against all sets, and beside the first of them.
@@ -52,11 +49,11 @@ def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRule
     )
 
 
-def _changes(spec: Spec, field: Field) -> tuple[RegionalChange, ...]:
-    """Return what a field changes of the structure beyond doubt, what is surest first."""
+def _changes(spec: Spec, field: Field, *, least: float = 2.0) -> tuple[RegionalChange, ...]:
+    """Return what a field changes of the structure, ``least`` standard deviations or more, what is surest first."""
     names = [*(region.name for region in spec.regions), ""]
     sure = np.abs(field.changes) / np.maximum(field.sigma, 1e-12)
-    shown = [(k, i) for k, i in np.argwhere(sure >= SHOWN_SIGMA).tolist()]
+    shown = [(k, i) for k, i in np.argwhere(sure >= least).tolist()]
     return tuple(
         RegionalChange(names[i], NAMES[k], *_percent(field.changes[k, i], field.sigma[k, i]))
         for k, i in sorted(shown, key=lambda one: -sure[one])

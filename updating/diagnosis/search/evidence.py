@@ -13,7 +13,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.ridges import along_ridge
-from updating.diagnosis.search.sampling import Weighed, about, effective, weighed
+from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, effective
 from updating.problem.candidate import Candidate
 from updating.problem.screening import basins
 from updating.thresholds import (
@@ -126,7 +126,7 @@ def explain(
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
     if laplace_only:
-        draft = weighed(partial(_parabolas, peaks), about(peaks), DRAFT_SAMPLES, most=DRAFT_SAMPLES)
+        draft = draw_posterior(partial(_parabolas, peaks), about(peaks), DRAFT_SAMPLES, most=DRAFT_SAMPLES)
         return _explanation(candidate, peaks[0].point, draft, peaks, laplace_only=True)
     return _sampled(problem, candidate, peaks, density)
 
@@ -165,7 +165,9 @@ def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak],
             heights[i], best = _height(point), max(best, point, key=_height)
         return heights
 
-    found = weighed(log_likelihood, about(peaks), min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE))
+    found = draw_posterior(
+        log_likelihood, about(peaks), min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE)
+    )
     return _explanation(candidate, best, found, peaks)
 
 
@@ -174,7 +176,7 @@ def _height(point: Point) -> float:
 
 
 def _explanation(
-    candidate: Candidate, best: Point, found: Weighed, peaks: list[Peak], *, laplace_only: bool = False
+    candidate: Candidate, best: Point, found: Posterior, peaks: list[Peak], *, laplace_only: bool = False
 ) -> Explanation:
     evidence = found.log_evidence + candidate.log_weight
     return Explanation(candidate, evidence, best, found.samples, found.weights, tuple(peaks), laplace_only)

@@ -58,10 +58,18 @@ class Mixture:
             parts.append(np.log(share) + student.logpdf(standard, SAMPLE_FREEDOM).sum(axis=0) - size)
         return np.stack(parts)
 
-    def fitted(self, samples: FloatArray, weights: FloatArray) -> Mixture:
+    def fitted(
+        self,
+        samples: FloatArray,
+        weights: FloatArray,
+        *,
+        least_share: float = 0.01,
+        least_spread: float = 1e-6,
+    ) -> Mixture:
         """Return the mixture after one step of expectation and maximisation, (m, k) samples with weights (m,) [-].
 
-        A component that few samples speak for stays nearly as wide as it was.
+        A component that few samples speak for stays nearly as wide as it was, and no narrower than ``least_spread``;
+        one with less than ``least_share`` of the weight goes [-].
         """
         parts = self.log_parts(samples)
         owned = weights * np.exp(parts - np.logaddexp.reduce(parts))
@@ -73,7 +81,7 @@ class Mixture:
         shares, means, factors = [], [], []
         for own, old in zip(owned, before, strict=True):
             share = float(own.sum())
-            if share < LEAST_SHARE:
+            if share < least_share:
                 continue
             mean = own @ samples / share
             away = samples - mean
@@ -81,16 +89,9 @@ class Mixture:
             wide = (number * (away.T * own) @ away / share + (k + 1) * old) / (number + k + 1)
             shares.append(share)
             means.append(mean)
-            factors.append(np.linalg.cholesky(wide + SMALLEST_SPREAD**2 * np.eye(k)))
+            factors.append(np.linalg.cholesky(wide + least_spread**2 * np.eye(k)))
         whole = np.array(shares) * (1 - PRIOR_SHARE) / sum(shares)
         return Mixture(whole, np.array(means), np.array(factors))
-
-
-LEAST_SHARE = 0.01
-"""Least share of the weight that keeps a component in the mixture [-]."""
-
-SMALLEST_SPREAD = 1e-6
-"""Least standard deviation of a component [-]."""
 
 
 def about(peaks: list[Peak]) -> Mixture:
@@ -101,7 +102,7 @@ def about(peaks: list[Peak]) -> Mixture:
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class Posterior:
     """Samples of the posterior.
 
     Parameters
@@ -124,13 +125,13 @@ def effective(weights: FloatArray) -> float:
     return float(1 / np.sum(weights**2))
 
 
-def weighed(
+def draw_posterior(
     log_likelihood: Callable[[FloatArray], FloatArray],
     mixture: Mixture,
     count: int,
     *,
     most: int = MOST_SAMPLES,
-) -> Weighed:
+) -> Posterior:
     """Draw from a mixture and from what it is fitted to until enough samples carry the weight.
 
     Parameters
@@ -153,7 +154,7 @@ def weighed(
         density = np.logaddexp.reduce(np.concatenate([one.log_parts(samples) for one in drawn]))
         log_weight = height - density - np.log(count)
         total = float(np.logaddexp.reduce(log_weight))
-        found = Weighed(total, samples, np.exp(log_weight - total))
+        found = Posterior(total, samples, np.exp(log_weight - total))
         if effective(found.weights) >= ENOUGH_SAMPLES or (1 + len(drawn)) * count > most:
             return found
         mixture = mixture.fitted(samples, _flattened(found.weights, 2 * (1 + samples.shape[1])))
