@@ -54,3 +54,19 @@ def test_two_maxima_of_which_one_was_missed() -> None:
     )
     assert found.log_evidence == pytest.approx(0.0, abs=0.25)
     assert found.weights[found.samples[:, 0] > 0.5].sum() == pytest.approx(0.5, abs=0.12)
+
+
+def test_a_likelihood_that_hardly_any_sample_can_bear() -> None:
+    """Weights too small for a number are no weights of zero: the rounds end, and near the integral."""
+
+    def narrow(u: np.ndarray) -> np.ndarray:
+        return np.where(np.abs(u - 0.9).max(axis=1) < 0.05, 2000.0, -1e4 * ((u - 0.3) ** 2).sum(axis=1))
+
+    found = draw_posterior(narrow, about([peak(np.eye(2) * 1e4, 0.3)]), 64)
+    assert found.log_evidence - 2000.0 == pytest.approx(2 * np.log(0.1), abs=1.0)
+
+
+def test_a_likelihood_of_nothing_has_no_evidence() -> None:
+    found = draw_posterior(lambda u: np.full(len(u), -np.inf), about([peak(np.eye(2))]), 64)
+    assert found.log_evidence == -np.inf
+    assert found.weights.sum() == pytest.approx(1.0)

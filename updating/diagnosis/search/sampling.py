@@ -154,17 +154,26 @@ def draw_posterior(
         density = np.logaddexp.reduce(np.concatenate([one.log_parts(samples) for one in drawn]))
         log_weight = height - density - np.log(count)
         total = float(np.logaddexp.reduce(log_weight))
+        if np.isneginf(total):
+            return Posterior(total, samples, np.full(len(samples), 1 / len(samples)))
         found = Posterior(total, samples, np.exp(log_weight - total))
         if effective(found.weights) >= ENOUGH_SAMPLES or (1 + len(drawn)) * count > most:
             return found
-        mixture = mixture.fitted(samples, _flattened(found.weights, 2 * (1 + samples.shape[1])))
+        mixture = mixture.fitted(samples, _flattened(log_weight, 2 * (1 + samples.shape[1])))
 
 
-def _flattened(weights: FloatArray, least: float) -> FloatArray:
-    """Return a power of the weights, the first among the halves of one by which as many samples carry it."""
-    while effective(weights) < least <= len(weights):
-        weights = np.sqrt(weights) / np.sum(np.sqrt(weights))
-    return weights
+def _flattened(log_weight: FloatArray, least: float) -> FloatArray:
+    """Return a power of the weights, the first of 1, 1/2, 1/4 ... by which ``least`` samples carry it, (m,) [-].
+
+    The power is taken of logarithms: far from a narrow maximum most weights are too small for a number. Where fewer
+    samples than ``least`` are possible, the weights stay as they are.
+    """
+    height = log_weight - log_weight.max()
+    weights = np.exp(height) / np.sum(np.exp(height))
+    while effective(weights) < least <= np.isfinite(height).sum():
+        height = height / 2
+        weights = np.exp(height) / np.sum(np.exp(height))
+    return np.asarray(weights)
 
 
 def _factor(peak: Peak) -> FloatArray:
