@@ -167,9 +167,12 @@ def gaussian(
     own, p, factor = groups.beside(d, data), len(groups.common), np.asarray(scales, dtype=float)
     rest, scaled = ((data[part].T / d[:, None, part]) @ data[part] for part in (~shapes, shapes))
     precision = rest[:, None] + scaled[:, None] / factor[:, None, None] ** 2 - own.share(factor)
-    precision += np.eye(p + 1)  # that of the residual's corner goes from chi-squared again
+    # what is added to the residual's corner, more than its round-off, goes from chi-squared again
+    corner = 1.0 + 1e-12 * precision[..., -1, -1]
+    precision[..., :-1, :-1] += np.eye(p)
+    precision[..., -1, -1] += corner
     pivots = np.diagonal(np.linalg.cholesky(precision), axis1=2, axis2=3)
-    chi2 = np.maximum(pivots[..., -1] ** 2 - 1.0, 0.0)
+    chi2 = np.maximum(pivots[..., -1] ** 2 - corner, 0.0)
     log_det = 2 * np.log(pivots[..., :-1]).sum(axis=-1) + 2 * shapes.sum() * np.log(factor)
     noise = np.log(d).sum(axis=1)[:, None] + len(r) * np.log(2 * np.pi)
     return Parts(

@@ -121,3 +121,11 @@ def test_the_doubt_in_the_idealisation_is_summed_over_with_groups_as_without() -
     assert few.nuisance.shape[1] <= FEW_NUISANCES < data.nuisance.shape[1]  # one large matrix, groups
     assert marginal(data).log_likelihood == pytest.approx(marginal(few).log_likelihood, rel=1e-12)
     assert marginal(data).share == marginal(few).share
+
+
+def test_a_prediction_far_from_the_data_that_a_nuisance_brings_back_is_no_error() -> None:
+    """Its chi-squared is a small difference of two numbers whose round-off exceeds it."""
+    data = comparison((9, 4, 3, 2), 3)
+    far = 1e7 * np.ones(len(data.residual))
+    near = replace(data, residual=-far, nuisance=0.02 * far[:, None], variance=np.full(len(far), 1e-7))
+    assert np.isfinite(marginal(near).log_likelihood)
