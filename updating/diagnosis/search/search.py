@@ -87,13 +87,6 @@ class Compared:
         """Names of the effects."""
         return self.explanation.names
 
-    @property
-    def rejected(self) -> bool:
-        """Whether it is no answer: it fits too badly (pairs, which have more freedom, must fit better), or only at a
-        size beyond what is plausible.
-        """
-        return bool(self.extreme) or self.p_value < (DOUBTED_FIT if len(self.names) > 1 else REJECTED_FIT)
-
 
 @dataclass(frozen=True)
 class Searched:
