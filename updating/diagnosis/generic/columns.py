@@ -63,32 +63,32 @@ def columns(
     step : float
         Step of the differences [-]: between round-off and curvature of ln f.
     """
-    candidate, best = explanation.candidate, explanation.best
-    (state,) = problem.place(candidate, best.coordinates)
-    stated = None if best.about is None else best.about[: len(problem.names)]
-    doubt = candidate.doubt_on(problem.predictor)
-
-    def compared(values: FloatArray) -> Comparison:
-        changed = State(
-            regional={
-                (region, name): float(np.exp(values[k, region]))
-                for k, name in enumerate(PROPERTIES)
-                for region in np.flatnonzero(values[k]).tolist()
-            }
-        )
-        found = problem.compare(state.plus(changed), stated, doubt=doubt)
-        return with_outliers(found, candidate.outliers)
-
-    here = compared(field)
+    here = compared(problem, explanation, field)
     slopes = np.zeros((*field.shape, len(here.residual)))
     for k, region in np.ndindex(*field.shape):
         moved = field.copy()
         moved[k, region] += step
-        slopes[k, region] = (here.residual - compared(moved).residual) / step
+        slopes[k, region] = (here.residual - compared(problem, explanation, moved).residual) / step
     slopes = np.nan_to_num(slopes)
     carried = replace(here, residual=here.residual + np.einsum("kr,krn->n", field, slopes))
     regions = {name: slopes[k].T for k, name in enumerate(PROPERTIES)}
     return Columns(carried, regions, np.eye(len(here.residual))[:, here.of("damping")], _gain(problem, here))
+
+
+def compared(problem: SpecimenProblem, explanation: Explanation, field: FloatArray) -> Comparison:
+    """Compare the data with an explanation at its best and a field (2, r) on it, see :func:`columns`."""
+    candidate, best = explanation.candidate, explanation.best
+    (state,) = problem.place(candidate, best.coordinates)
+    stated = None if best.about is None else best.about[: len(problem.names)]
+    changed = State(
+        regional={
+            (region, name): float(np.exp(values[region]))
+            for name, values in zip(PROPERTIES, field, strict=True)
+            for region in np.flatnonzero(values).tolist()
+        }
+    )
+    found = problem.compare(state.plus(changed), stated, doubt=candidate.doubt_on(problem.predictor))
+    return with_outliers(found, candidate.outliers)
 
 
 def _gain(problem: SpecimenProblem, here: Comparison, *, fewest: int = 3) -> FloatArray:

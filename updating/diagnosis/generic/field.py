@@ -10,12 +10,13 @@ and what that leaves out of their own evidence is alike in both.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.generic.columns import PROPERTIES, Columns, columns, correlations
+from updating.diagnosis.generic.columns import PROPERTIES, Columns, columns, compared, correlations
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import sensitivities
 from updating.likelihood.gaussian import Marginal, marginal
@@ -36,6 +37,8 @@ class Grid:
         Standard deviations of ln zeta mode by mode, and of ln gain channel by channel [-].
     rounds : int
         Most linearisations about the most probable field.
+    steps : tuple of float
+        Shares of the way to the most probable field that are tried [-].
     at_rest : float
         The field is at rest when no logarithm of a factor moves by more [-].
     farthest : float
@@ -46,7 +49,8 @@ class Grid:
     lengths: tuple[float, ...] = (0.05, 0.3)
     losses: tuple[float, ...] = (0.0, 0.3, 1.0)
     gains: tuple[float, ...] = (0.0, 0.03, 0.3)
-    rounds: int = 3
+    rounds: int = 6
+    steps: tuple[float, ...] = (1.0, 0.5, 0.25, 0.1)
     at_rest: float = 0.02
     farthest: float = 1.5
 
@@ -127,9 +131,11 @@ def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = G
         off = float(np.abs(moved - field).max())
         if off < nearest:
             nearest, best = off, Field(total - plain, top, moved, sigma)
-        if off < grid.at_rest:
+        height = partial(_height, problem, explanation, here, top, factors, free)
+        following = max((field + step * (moved - field) for step in grid.steps), key=height)
+        if off < grid.at_rest or np.abs(following - field).max() < grid.at_rest:
             break
-        field = moved
+        field = following
     return best
 
 
@@ -153,6 +159,25 @@ def _nuisances(here: Columns, kind: Kind, factors: list[FloatArray], free: Float
 def _marginal(here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray) -> Marginal:
     """Integrate a field of one kind out, and the parameters (n, k) of the set beside it."""
     return marginal(replace(here.comparison, nuisance=np.hstack(_nuisances(here, kind, factors, free))))
+
+
+def _height(
+    problem: SpecimenProblem,
+    explanation: Explanation,
+    here: Columns,
+    kind: Kind,
+    factors: list[FloatArray],
+    free: FloatArray,
+    field: FloatArray,
+) -> float:
+    """Return the logarithm of likelihood times prior of a field (2, r) that is not linearised [-].
+
+    What is no longer of its kind counts as if it were.
+    """
+    there = replace(here, comparison=compared(problem, explanation, field), regions={})
+    standard = np.linalg.solve(kind.amplitude * factors[kind.length], field.T) if kind.amplitude else field
+    prior = -0.5 * float(np.sum(standard**2))
+    return _marginal(there, replace(kind, properties=()), factors, free).log_likelihood + prior
 
 
 def _most_probable(
