@@ -10,11 +10,11 @@ from scipy.stats import chi2
 from updating_cases import BEAM, blank, case_of
 
 from updating import Measured, Predictor
+from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.goodness import p_values
 from updating.problem.candidate import Candidate
-from updating.thresholds import SIGNIFICANT_GAP
 
 SIGMA, REPEATABILITY, MODES, MODE = 7e-4, 1e-3, 5, 2
 UNEVEN = np.array([1.0, -0.75, 0.5, -1.0, 0.25])
@@ -47,4 +47,4 @@ def test_a_change_is_judged_by_the_noise_of_both_tests(missed: float, change: fl
     found = p_values(explain(problem, Candidate()).best)
     expected = chi2.sf(change**2 / (2 * (SIGMA**2 + REPEATABILITY**2)), MODES)
     assert found["frequency"] == pytest.approx(expected, rel=0.02)
-    assert (found["frequency"] < SIGNIFICANT_GAP) == (change >= 0.01)
+    assert (found["frequency"] < DEFAULT_RULES.significant_gap) == (change >= 0.01)
