@@ -326,7 +326,7 @@ class Remainder(Displayed):
 
 @dataclass(frozen=True)
 class RegionalChange:
-    """What a cause without a name would change in one region.
+    """What a cause in no library would change in one region.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The evidence of a cause without a name, beside no cause or beside a set of them, and what it would be.
+"""The evidence of a cause in no library, beside no cause or beside a set of them, and what it would be.
 
 The field has a Gaussian prior, so that it is integrated out as the nuisances are. Its amplitudes and its length are
 summed over a grid. Stiffness and mass are linearised about their most probable values, in a few rounds; the one whose
@@ -78,7 +78,7 @@ class Kind:
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """A cause without a name beside a set of causes.
+    """A cause in no library beside a set of causes.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Field:
 
 
 def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = Grid()) -> Field:
-    """Weigh a cause without a name beside a set of causes; beside none it is the cause.
+    """Weigh a cause in no library beside a set of causes; beside none it is the cause.
 
     Parameters
     ----------

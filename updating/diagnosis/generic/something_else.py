@@ -24,7 +24,7 @@ NAMES: tuple[Literal["stiffness"], Literal["mass"]] = ("stiffness", "mass")
 
 
 def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRules) -> SomethingElse | None:
-    """Weigh a cause without a name against all sets, and beside the first of them.
+    """Weigh a cause in no library against all sets, and beside the first of them.
 
     Parameters
     ----------
