@@ -77,7 +77,7 @@ def columns(
             }
         )
         found = problem.compare(state.plus(changed), stated, doubt=doubt)
-        return with_outliers(found, candidate.outliers).settled(best.marginal.share, best.marginal.unseen)
+        return with_outliers(found, candidate.outliers)
 
     here = compared(field)
     slopes = np.zeros((*field.shape, len(here.residual)))

@@ -1,9 +1,10 @@
 """The evidence of a cause without a name, beside no cause or beside a set of them, and what it would be.
 
 The field has a Gaussian prior, so that it is integrated out as the nuisances are. Its amplitudes and its length are
-summed over a grid. Stiffness and mass are linearised about their most probable values, in a few rounds. The parameters
-of the set stay free: their sensitivities are nuisances with and without the field, and what that leaves out of their
-own evidence is alike in both.
+summed over a grid. Stiffness and mass are linearised about their most probable values, in a few rounds; the one whose
+most probable field lies nearest to where it was linearised stands. A linearisation from afar may promise a fit that the
+model does not have. The parameters of the set stay free: their sensitivities are nuisances with and without the field,
+and what that leaves out of their own evidence is alike in both.
 """
 
 from __future__ import annotations
@@ -109,7 +110,7 @@ def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = G
     factors = correlations(problem.predictor.spec, grid.lengths)
     free = np.nan_to_num(sensitivities(problem, explanation.candidate, explanation.best))
     field = np.zeros((len(PROPERTIES), len(factors[0])))
-    plain, best = -np.inf, Field(-np.inf, Kind(), field, field)
+    plain, nearest, best = -np.inf, np.inf, Field(-np.inf, Kind(), field, field)
     for once in range(grid.rounds):
         here = columns(problem, explanation, field)
         found = {kind: _marginal(here, kind, factors, free) for kind in _kinds(here, grid, len(factors))}
@@ -118,12 +119,15 @@ def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = G
         total = float(np.logaddexp.reduce([one.log_likelihood for one in found.values()])) - np.log(
             len(found)
         )
+        if not (np.isfinite(plain) and np.isfinite(total)):
+            break
         top = max(found, key=lambda kind: found[kind].log_likelihood)
         moved, sigma = _most_probable(here, top, factors, free)
         moved = np.clip(moved, -grid.farthest, grid.farthest)
-        if total - plain > best.log_factor:
-            best = Field(total - plain, top, moved, sigma)
-        if np.abs(moved - field).max() < grid.at_rest:
+        off = float(np.abs(moved - field).max())
+        if off < nearest:
+            nearest, best = off, Field(total - plain, top, moved, sigma)
+        if off < grid.at_rest:
             break
         field = moved
     return best
@@ -157,7 +161,8 @@ def _most_probable(
     """Return the most probable logarithms of the factors, and their standard deviations, (2, r) each [-]."""
     found = _marginal(here, kind, factors, free)
     whole = np.hstack(_nuisances(here, kind, factors, free))
-    precision = np.eye(whole.shape[1]) + (whole.T / here.comparison.noise(found.scale)) @ whole
+    noise = here.comparison.settled(found.share, found.unseen).noise(found.scale)
+    precision = np.eye(whole.shape[1]) + (whole.T / noise) @ whole
     spread, lower = np.linalg.inv(precision), kind.amplitude * factors[kind.length]
     field, sigma = np.zeros((2, len(PROPERTIES), len(lower)))
     for k, name in enumerate(kind.properties):

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from scipy.special import expit
+from scipy.special import expit, logit, logsumexp
 
 from updating.diagnosis.answer.result import RegionalChange, SomethingElse
 from updating.diagnosis.answer.rules import DecisionRules
 from updating.diagnosis.generic.field import Field, beside
 from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.prior import log_prior
 from updating.diagnosis.search.search import Search
 from updating.models.spec import Spec
+from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 
 NAMES: tuple[Literal["stiffness"], Literal["mass"]] = ("stiffness", "mass")
@@ -40,13 +43,26 @@ def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRule
     sets = [row for row in found.compared if row.names]
     if not isinstance(problem, SpecimenProblem) or not problem.predictor.spec.regions or not sets:
         return None
-    alone, first = beside(problem, found.empty.explanation), beside(problem, sets[0].explanation)
-    evidence = found.empty.explanation.log_evidence + alone.log_factor + np.log(rules.something_else_prior)
-    own = sets[0].explanation.log_evidence + log_prior(len(sets[0].names), found.examined)
-    others = own + np.log(sum(row.probability for row in sets) / sets[0].probability)
-    return SomethingElse(
-        float(expit(evidence - others)), first.log_factor, _changes(problem.predictor.spec, alone)
-    )
+    first = beside(problem, sets[0].explanation)
+    alone = [(one, beside(problem, one)) for one in _without_effects(problem, found)]
+    scores = [one.log_evidence + field.log_factor for one, field in alone]
+    evidence = float(logsumexp(scores)) + logit(rules.something_else_prior)
+    others = logsumexp([r.explanation.log_evidence + log_prior(len(r.names), found.examined) for r in sets])
+    share = float(expit(evidence - others)) if np.isfinite(evidence) else 0.0
+    changes = _changes(problem.predictor.spec, alone[int(np.argmax(scores))][1])
+    return SomethingElse(share, first.log_factor, changes)
+
+
+def _without_effects(problem: SpecimenProblem, found: Search) -> list[Explanation]:
+    """Return no effect as the sets were weighed: on each theory, as the data are stated and with outliers."""
+    theories = (False, True) if found.both else (False,)
+    half = -float(np.log(len(theories)))
+    none = [
+        explain(problem, Candidate(fuller=fuller, outliers=outliers))
+        for outliers in dict.fromkeys(((), found.empty.explanation.candidate.outliers))
+        for fuller in theories
+    ]
+    return [replace(one, log_evidence=one.log_evidence + half) for one in none]
 
 
 def _changes(spec: Spec, field: Field, *, least: float = 2.0) -> tuple[RegionalChange, ...]:
