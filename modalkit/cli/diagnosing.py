@@ -26,7 +26,7 @@ from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.documents import diagnosis_document
 from modalkit.output.library import effects_document, effects_table
 from modalkit.output.schemas.effects import EffectEntry
-from modalkit.output.summary import searched_text, separates, summary_text
+from modalkit.output.summary import of_no_library_text, searched_text, separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.study.rules import read_rules
@@ -116,6 +116,8 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
             for t in diagnosis.next_test
         ]
         show_table(pd.DataFrame(rows), "What to measure next")
+    if other := of_no_library_text(diagnosis):
+        out.print(other[:1].upper() + other[1:], markup=False)
     if any(one.sets for one in diagnosis.searched):
         out.print(f"Searched: {searched_text(diagnosis)}", markup=False)
     if diagnosis.not_examined:

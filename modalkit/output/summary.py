@@ -368,6 +368,19 @@ SIZES = {1: "single causes", 2: "pairs", 3: "sets of three", 4: "sets of four"}
 """Sets of causes, by how many causes they have."""
 
 
+def of_no_library_text(diagnosis: Diagnosis) -> str:
+    """Say how likely a cause is that is in no library, and whether the first set leaves room for one."""
+    other = diagnosis.something_else
+    if other is None or not diagnosis.ranking:
+        return ""
+    first = " + ".join(diagnosis.ranking[0].effects)
+    leaves = "something" if other.beside > diagnosis.rules.something_left else "nothing"
+    return (
+        f"a cause in no library: {probability(other.probability)}; {first} leaves {leaves} for one (logarithm of the "
+        f"Bayes factor {other.beside:+.1f})"
+    )
+
+
 def searched_text(diagnosis: Diagnosis) -> str:
     """Say how many of the possible sets of causes were searched."""
     parts = [

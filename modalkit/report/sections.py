@@ -10,7 +10,7 @@ from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.figures.words import METRICS
 from modalkit.output.forms import numbers_a_form
-from modalkit.output.summary import answers, searched_text, separates
+from modalkit.output.summary import answers, of_no_library_text, searched_text, separates
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked
@@ -310,12 +310,20 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
             if math.isfinite(left.sigma)
             else ""
         )
-        return element("p", f"Nothing beyond noise, once {whose} is in the model.{worst}")
+        nothing = element("p", f"Nothing beyond noise, once {whose} is in the model.{worst}")
+        return joined(nothing, *_of_no_library(diagnosis))
     statement = (
         f"{whose} leaves {percent(left.percent)} beyond noise, {left.sigma:.0f} standard deviations where it is "
         "largest. Something else is there, or something was measured worse than stated. It is carried by:"
     )
-    return joined(element("p", statement), bullets(list(left.carried_by) or ["all data together"]))
+    carried = bullets(list(left.carried_by) or ["all data together"])
+    return joined(element("p", statement), carried, *_of_no_library(diagnosis))
+
+
+def _of_no_library(diagnosis: Diagnosis) -> list[Raw]:
+    """Return a paragraph on a cause that is in no library, none where it was not weighed."""
+    text = of_no_library_text(diagnosis)
+    return [element("p", text[:1].upper() + text[1:] + ".")] if text else []
 
 
 def the_next_test(diagnosis: Diagnosis) -> Raw:

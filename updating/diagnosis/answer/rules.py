@@ -53,7 +53,7 @@ class DecisionRules:
         By how much the log evidence of an answer exceeds that of no effect at all [-]: odds of 20.
     something_else_prior : float
         Prior of a cause that is in no library [-]: of the blind trials so many have one. Judged. Doubled: a set must be
-        twice as likely to be named.
+        2.4 times as likely to be named.
     something_left : float
         Logarithm of the Bayes factor of such a cause beside the first set from which on more than noise is left [-]:
         odds of 3. Doubled: odds of 9.
