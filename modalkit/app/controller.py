@@ -20,6 +20,7 @@ from modalkit.app.opened import Opened
 from modalkit.app.store import Store
 from modalkit.app.work import KINDS
 from modalkit.app.workbench import Workbench
+from modalkit.output.schemas.diagnosis import SOMETHING_ELSE
 from modalkit.study.read import Study
 from modalkit.views.hits import frf_page, hits_page, record_page
 from modalkit.views.modes import fit_page, modes_page, provisional_page
@@ -266,7 +267,8 @@ class Controller:
         """
         with self._lock:
             found = self._result("diagnose")
-            ranking = [] if found is None else found["document"]["cause"]["ranking"]
+            every = [] if found is None else found["document"]["cause"]["ranking"]
+            ranking = [one for one in every if one["effects"] != [SOMETHING_ELSE]]
             if not 0 <= row < len(ranking):
                 raise InputError(f"the diagnosis has no row {row + 1}; diagnose first")
             predictor, since_baseline = self._workbench.predictor(self.study), self.study.baseline is not None

@@ -7,11 +7,17 @@ from collections.abc import Sequence
 from acquisition import HitVerdict, ModalData, rejected_points
 from identification import ModalModel, mpc
 from modalkit.output.fields import fill
-from modalkit.output.schemas.diagnosis import CauseEntry, DiagnosisDocument, EstimateEntry, RankedEntry
+from modalkit.output.schemas.diagnosis import (
+    SOMETHING_ELSE,
+    CauseEntry,
+    DiagnosisDocument,
+    EstimateEntry,
+    RankedEntry,
+)
 from modalkit.output.schemas.modes import HitEntry, ModeEntry, ModesDocument, ShapeEntry, TrendEntry
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
-from updating.diagnosis.answer.result import Ranked
+from updating.diagnosis.answer.result import Ranked, SomethingElse
 from updating.diagnosis.answer.verdict import NAME
 
 
@@ -84,7 +90,8 @@ def hit_document(hit: HitVerdict) -> HitEntry:
 
 def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> DiagnosisDocument:
     """Return a diagnosis as ``modalkit.diagnosis/1``."""
-    ranking = [_ranked_document(row, named=row.effects in diagnosis.sets) for row in diagnosis.ranking]
+    rows = [_ranked_document(row, named=row.effects in diagnosis.sets) for row in diagnosis.ranking]
+    ranking = _with_something_else(rows, diagnosis.something_else)
     return fill(
         DiagnosisDocument,
         diagnosis,
@@ -92,6 +99,24 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> Di
         rules=diagnosis.rules.changed,
         warnings=[*diagnosis.warnings, *warnings],
     )
+
+
+def _with_something_else(rows: list[RankedEntry], other: SomethingElse | None) -> list[RankedEntry]:
+    """Return the rows of the ranking with that of a cause in no library, all shares those of the whole."""
+    if other is None:
+        return rows
+    sets, rest = sum(row["probability"] for row in rows), 1.0 - other.probability
+    whole = rest + sets * other.probability
+    shared: list[RankedEntry] = [{**row, "probability": row["probability"] * rest / whole} for row in rows]
+    own: RankedEntry = {
+        "effects": [SOMETHING_ELSE],
+        "probability": sets * other.probability / whole,
+        "equivalents": [],
+        "parameters": {},
+        "plausible": True,
+        "fit_p_value": None,
+    }
+    return sorted([*shared, own], key=lambda row: -row["probability"])
 
 
 def _ranked_document(row: Ranked, *, named: bool) -> RankedEntry:

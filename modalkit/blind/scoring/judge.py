@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from modalkit.blind.answer import Answer
 from modalkit.blind.trial import Truth
+from modalkit.output.schemas.diagnosis import SOMETHING_ELSE
 
 SAME = (
     frozenset({"calibration_gain", "section_scale"}),
@@ -38,7 +39,9 @@ def merged(effects: Collection[str]) -> frozenset[str]:
 
 
 def accepted(effects: Collection[str], truth: Truth) -> bool:
-    """Tell whether a set is a right answer; it must be the whole set."""
+    """Tell whether a set is a right answer; it must be the whole set, and a cause in no library where it is that."""
+    if tuple(effects) == (SOMETHING_ELSE,):
+        return sort_of(truth) in ("outside", "left out")
     return tuple(sorted(effects)) in truth.accepted
 
 

@@ -7,6 +7,9 @@ from typing import Annotated, Literal, TypedDict
 
 from modalkit.output.fields import Of
 
+SOMETHING_ELSE = "something_else"
+"""What stands for a cause in no library where a row of the ranking names its effects."""
+
 
 class GapMode(TypedDict):
     """One measured mode beside its partner."""
@@ -85,8 +88,13 @@ class EstimateEntry(TypedDict):
 class RankedEntry(TypedDict):
     """One set of effects."""
 
-    effects: Annotated[Sequence[str], "the set; one that occurs twice stands twice"]
-    probability: Annotated[float, "of this set, among all compared and no effect at all [-]"]
+    effects: Annotated[
+        Sequence[str],
+        "the set; one that occurs twice stands twice; `something_else` is a cause in no library",
+    ]
+    probability: Annotated[
+        float, "of this set, among all compared, no effect at all, and a cause in no library [-]"
+    ]
     equivalents: Annotated[Sequence[Sequence[str]], "other rows that fit less than 2 sigma worse or better"]
     parameters: Annotated[
         Mapping[str, EstimateEntry],
@@ -95,7 +103,9 @@ class RankedEntry(TypedDict):
     ]
     plausible: Annotated[bool, "whether the sizes are believable for such a specimen"]
     fit_p_value: Annotated[
-        float, "chance of a misfit like this or worse if the set is true [-]", Of("p_value")
+        float | None,
+        "chance of a misfit like this or worse if the set is true; null of `something_else` [-]",
+        Of("p_value"),
     ]
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from acquisition.quantities import estimate, number, quantity
+from modalkit.output.schemas.diagnosis import SOMETHING_ELSE
 from modalkit.papers.real.running import RealOutcome
 
 
@@ -70,7 +71,8 @@ def _places(outcome: RealOutcome) -> list[str]:
 
 
 def _ranked(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    return sorted(document["cause"]["ranking"], key=lambda row: -float(row["probability"]))
+    rows = [row for row in document["cause"]["ranking"] if row["effects"] != [SOMETHING_ELSE]]
+    return sorted(rows, key=lambda row: -float(row["probability"]))
 
 
 def _size(name: str, parameter: Mapping[str, Any]) -> str:
