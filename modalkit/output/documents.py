@@ -17,7 +17,8 @@ from modalkit.output.schemas.diagnosis import (
 from modalkit.output.schemas.modes import HitEntry, ModeEntry, ModesDocument, ShapeEntry, TrendEntry
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
-from updating.diagnosis.answer.result import Ranked, SomethingElse
+from updating.diagnosis.answer.in_no_library import SomethingElse
+from updating.diagnosis.answer.result import Ranked
 from updating.diagnosis.answer.verdict import NAME
 
 

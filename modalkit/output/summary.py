@@ -11,7 +11,8 @@ import numpy as np
 from acquisition.quantities import number, p_value, percent, place, probability
 from modalkit.output.forms import numbers_a_form
 from updating import Diagnosis
-from updating.diagnosis.answer.result import NextTest, Ranked, Shrink, SomethingElse
+from updating.diagnosis.answer.in_no_library import SomethingElse
+from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
 from updating.diagnosis.answer.where import CHANNELS, acting_together
 from updating.effects import Lack, Twin, in_a_set, twin_of

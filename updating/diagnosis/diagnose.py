@@ -161,6 +161,7 @@ def _diagnose(
     inconsistent = splits(problem, leader, rules=rules) if verdict == "named" else ()
     if inconsistent:
         verdict, sets, lacks = "unknown", (), "one size"
+    on_fit = _on_fit(leader, inconsistent, significant=significant)
     _stage(progress, "choosing the next test")
     return Diagnosis(
         title=" and ".join(titles),
@@ -173,16 +174,7 @@ def _diagnose(
         sets=sets,
         ranking=rank(problem, found, rules=rules),
         next_test=propose(problem, found, sets, verdict, separated=rules.separated_sigma),
-        warnings=tuple(
-            dict.fromkeys(
-                (
-                    *warnings,
-                    *_on_rules(rules),
-                    *_notes(problem, found, sets),
-                    *_on_fit(leader, inconsistent, significant=significant),
-                )
-            )
-        ),
+        warnings=tuple(dict.fromkeys([*warnings, *_on_rules(rules), *_notes(problem, found, sets), *on_fit])),
         not_examined=found.not_examined,
         comparable=comparable,
         remainder=left if significant or found.empty.explanation.candidate.outliers else None,

@@ -21,6 +21,7 @@ from acquisition.quantities import (
     quantity,
     sigmas,
 )
+from updating.diagnosis.answer.in_no_library import SomethingElse
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.search.search import Searched
 from updating.effects import LIBRARY, Effect
@@ -322,54 +323,6 @@ class Remainder(Displayed):
         if not self.significant:
             return "nothing beyond noise"
         return f"{percent(self.percent)}, {self.sigma:.0f} sigma in {', '.join(self.carried_by) or 'all data together'}"
-
-
-@dataclass(frozen=True)
-class RegionalChange:
-    """What a cause in no library would change in one region.
-
-    Parameters
-    ----------
-    region : str
-        Its name; empty for what is in no region.
-    property : {"stiffness", "mass"}
-        What is changed.
-    percent, low95, high95 : float
-        By how much, and the ends of the 95 % interval [%].
-    """
-
-    region: str
-    property: Literal["stiffness", "mass"]
-    percent: float
-    low95: float
-    high95: float
-
-    def __str__(self) -> str:
-        of = f"of {self.region}" if self.region else "outside all regions"
-        return f"{self.property} {of} {self.percent:+.2g} % ({self.low95:+.2g} to {self.high95:+.2g})"
-
-
-@dataclass(frozen=True)
-class SomethingElse(Displayed):
-    """A cause that is in no library: fields of stiffness and mass, of damping and of gains, weighed as the sets are.
-
-    Parameters
-    ----------
-    probability : float
-        That it is the cause, and no set of the library, given that there is one [-].
-    beside : float
-        Logarithm of the Bayes factor of such a cause beside the first set: above 0 something is left [-].
-    changes : tuple of RegionalChange
-        What it would change of the structure where it is the cause, what is surest first; those of less than two
-        standard deviations are left out.
-    """
-
-    probability: float
-    beside: float
-    changes: tuple[RegionalChange, ...]
-
-    def _headline(self) -> str:
-        return f"{probability(self.probability)}: {', '.join(map(str, self.changes[:3])) or 'nothing of the structure'}"
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from scipy.special import expit, logit, logsumexp
 
-from updating.diagnosis.answer.result import RegionalChange, SomethingElse
+from updating.diagnosis.answer.in_no_library import RegionalChange, SomethingElse
 from updating.diagnosis.answer.rules import DecisionRules
 from updating.diagnosis.generic.field import Field, beside
 from updating.diagnosis.problem.face import DiagnosisProblem
