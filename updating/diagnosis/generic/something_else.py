@@ -14,7 +14,7 @@ from updating.diagnosis.generic.field import Field, beside
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.search import Search
+from updating.diagnosis.search.search import Compared, Search
 from updating.models.spec import Spec
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
@@ -43,14 +43,33 @@ def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRule
     sets = [row for row in found.compared if row.names]
     if not isinstance(problem, SpecimenProblem) or not problem.predictor.spec.regions or not sets:
         return None
+    prior = logit(rules.something_else_prior)
+    own = [r.explanation.log_evidence + log_prior(len(r.names), found.examined) for r in sets]
     first = beside(problem, sets[0].explanation)
     alone = [(one, beside(problem, one)) for one in _without_effects(problem, found)]
     scores = [one.log_evidence + field.log_factor for one, field in alone]
-    evidence = float(logsumexp(scores)) + logit(rules.something_else_prior)
-    others = logsumexp([r.explanation.log_evidence + log_prior(len(r.names), found.examined) for r in sets])
+    evidence = float(logsumexp(scores)) + prior
+    more = [one + prior for one in _first_and_more(problem, found, sets[0], first)]
+    others = logsumexp([*own, *more])
     share = float(expit(evidence - others)) if np.isfinite(evidence) else 0.0
     changes = _changes(problem.predictor.spec, alone[int(np.argmax(scores))][1])
     return SomethingElse(share, first.log_factor, changes)
+
+
+def _first_and_more(problem: SpecimenProblem, found: Search, row: Compared, first: Field) -> list[float]:
+    """Return the logarithm of the evidence and prior of the first set with a cause in no library beside it.
+
+    What that cause does beside the set speaks for no other one. A set that stands with data set aside is weighed
+    without that, too: the data may be that cause's.
+    """
+    prior, one = log_prior(len(row.names), found.examined), row.explanation
+    scores = [one.log_evidence + first.log_factor + prior]
+    if one.candidate.outliers:
+        plain = replace(one.candidate, outliers=())
+        stated = explain(problem, plain, starts=[one.best.coordinates], laplace_only=True)
+        if stated.best.possible:
+            scores.append(stated.log_evidence + beside(problem, stated).log_factor + prior)
+    return scores
 
 
 def _without_effects(problem: SpecimenProblem, found: Search) -> list[Explanation]:
