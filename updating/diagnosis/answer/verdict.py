@@ -126,7 +126,7 @@ def shortcoming(
         return "closing"
     if not _better(found, rules):
         return "evidence"
-    if unnamed > 1 - rules.credible_share:
+    if unnamed >= rules.credible_share:
         return "library"
     return None if comparable or len(_credible(found, rules)) > 1 else "partners"
 
