@@ -75,7 +75,7 @@ class Mixture:
         owned = weights * np.exp(parts - np.logaddexp.reduce(parts))
         k = samples.shape[1]
         before = [
-            np.cov(samples.T, aweights=owned[0] + 1e-300).reshape(k, k),
+            np.cov(samples.T, aweights=owned[0] + 1e-300, ddof=0).reshape(k, k),
             *(f @ f.T for f in self.factors),
         ]
         shares, means, factors = [], [], []
