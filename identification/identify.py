@@ -17,6 +17,7 @@ from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
 from identification.arrangement import signs, unsigned
 from identification.band.uninformed import uninformed_modes
+from identification.fading import noise_fading
 from identification.fit.course import course_of, resampled
 from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
@@ -355,6 +356,7 @@ def _assemble(
         carried=None if np.shares_memory(fitted.frfs.values, data.values) else fitted.frfs,
         trend=trend,
         hit_errors=covariance.hit_errors(fitted, factors, own),
+        fading=noise_fading(fitted),
     )
 
 

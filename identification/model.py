@@ -13,6 +13,7 @@ from acquisition.dof import Dof
 from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
 from identification.arrangement import signs
+from identification.fading import Fading
 from identification.fit.equations import basis
 from identification.fit.equations.residues import Residues, synthesise
 from identification.hit_errors import HitErrors
@@ -73,6 +74,8 @@ class ModalModel(Shown, Animated):
         How frequencies change from the first point to the last; None where a test does not rove over enough points.
     hit_errors : HitErrors, optional
         What each hit adds to the errors of the constants; None where no hits are known.
+    fading : Fading, optional
+        How the noise fades along the records; None where no hits are known.
     """
 
     modal: ModalData
@@ -97,6 +100,7 @@ class ModalModel(Shown, Animated):
     levels: LevelDependence | None = None
     trend: Trend | None = None
     hit_errors: HitErrors | None = None
+    fading: Fading | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

@@ -96,10 +96,11 @@ small by two or more. The p-value of a fit is never above the tail of this prior
 SINGLE_SCATTER_PRIOR = (0.3, 0.25, 0.2, 0.15, 0.1)
 """The same where nothing shows the scatter [-]: nearly any is as likely."""
 
-IDEALISATION_SHARES = (1.0, 0.3, 0.1)
-"""Sizes of the doubt in an effect's idealisation, as shares of its ``fidelity``, each as likely [-]: that is what it
-may be off where the structure is none of those it was made for; on one of them it is off by next to nothing. Roots of
-ten, so that no size between is far from one. Doubled: the largest, and an effect may leave twice as much."""
+DOUBT_SHARES = (1.0, 0.3, 0.1)
+"""Sizes of a doubt of which the most is judged, as shares of that, each as likely [-]: of an effect's idealisation,
+whose ``fidelity`` is what it may be off where the structure is none of those it was made for; of the scatter of damping
+from mounting to mounting; of phases; of a frequency's dependence on the level. Roots of ten, so that no size between
+is far from one. Doubled: the largest, and an effect may leave twice as much."""
 
 END_REACH = 0.01
 """Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing

@@ -12,11 +12,11 @@ from scipy.linalg import block_diag
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
-from updating.thresholds import IDEALISATION_SHARES, UNSEEN_SHARES
+from updating.thresholds import DOUBT_SHARES, UNSEEN_SHARES
 
-CHANNELS = ("frequency", "damping", "frf", "phase", "level", "trend", "unpaired")
-"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force, change over
-the test; and all that is known of modes without a partner in the nominal model."""
+CHANNELS = ("frequency", "damping", "frf", "phase", "level", "trend", "unpaired", "noise")
+"""Kinds of data: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force, change over the
+test; all that is known of modes without a partner in the nominal model; and how the noise fades along the records."""
 
 SCALED = "frf"
 """The channel whose noise has an unknown scale."""
@@ -51,6 +51,10 @@ class Block:
         Which data the state says nothing of; left out, none.
     unseen : (n,) array, optional
         What of the variance is an error that no scatter shows, at the most [-]; left out, nothing.
+    judged : (n,) array, optional
+        What of the variance is a doubt of the channel of which only the most is judged [-]; left out, nothing.
+    judged_own : bool
+        Whether the ``own`` nuisances are of that doubt, too.
     """
 
     channel: str
@@ -64,6 +68,8 @@ class Block:
     idealised: FloatArray | None = None
     idle: BoolArray | None = None
     unseen: FloatArray | None = None
+    judged: FloatArray | None = None
+    judged_own: bool = False
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -99,6 +105,11 @@ class Comparison:
         Which data the state says nothing of, so that none of them fits or does not; left out, none.
     unseen : (n,) array, optional
         What of the variance is an error that no scatter shows, at the most [-]; left out, its size is settled.
+    judged : (n,) array, optional
+        What of the variance is a doubt of its channel of which only the most is judged [-]; left out, its size is
+        settled.
+    judged_columns : (p,) bool array, optional
+        Which nuisances are of that doubt, too.
     """
 
     residual: FloatArray
@@ -114,6 +125,8 @@ class Comparison:
     idealised: FloatArray | None = None
     idle: BoolArray | None = None
     unseen: FloatArray | None = None
+    judged: FloatArray | None = None
+    judged_columns: BoolArray | None = None
 
     @property
     def prediction(self) -> Prediction:
@@ -144,16 +157,43 @@ class Comparison:
         """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
         return np.where(self.scaled, scale**2, 1.0) * self.variance
 
-    def settled(self, share: float, unseen: float = 1.0) -> Comparison:
-        """Return the comparison with the two doubts of unknown size at shares of the most that they may be [-].
+    def settled(
+        self, share: float, unseen: float = 1.0, judged: Sequence[tuple[int, float]] = ()
+    ) -> Comparison:
+        """Return the comparison with the doubts of unknown size at shares of the most that they may be [-].
 
         The doubt in a candidate's idealisation, ``share``, is that which each datum bears by itself. Whether the whole
         shift is a few per cent too large no data show, since the effect's own size makes up for it: that doubt stays.
-        ``unseen`` is the share of errors that no scatter of hits shows.
+        ``unseen`` is the share of errors that no scatter of hits shows, ``judged`` that of the doubt of a channel, by
+        its number; of those left out it is all.
         """
-        if self.idealised is None and self.unseen is None:
+        one = self.channels_settled(judged)
+        if one.idealised is None and one.unseen is None:
+            return one
+        return replace(one, variance=one.variances([(share, unseen)])[0], idealised=None, unseen=None)
+
+    def channels_settled(self, judged: Sequence[tuple[int, float]] = ()) -> Comparison:
+        """Return the comparison with the doubt of each channel at a share of the most that it may be, by number [-]."""
+        if self.judged is None or self.judged_columns is None:
             return self
-        return replace(self, variance=self.variances([(share, unseen)])[0], idealised=None, unseen=None)
+        size = np.ones(len(CHANNELS))
+        for channel, share in judged:
+            size[channel] = share
+        each = size[self.channel]
+        return replace(
+            self,
+            variance=self.variance - (1 - each**2) * self.judged,
+            nuisance=np.where(self.judged_columns, each[:, None] * self.nuisance, self.nuisance),
+            judged=None,
+            judged_columns=None,
+        )
+
+    def beside(self, before: FloatArray, after: FloatArray) -> Comparison:
+        """Return the comparison with further nuisances, (n, k) each, before and after its own [-]."""
+        whole, own = np.hstack([before, self.nuisance, after]), self.judged_columns
+        if own is not None:
+            own = np.pad(own, (before.shape[1], after.shape[1]))
+        return replace(self, nuisance=whole, judged_columns=own)
 
     def variances(self, sizes: Sequence[tuple[float, float]]) -> FloatArray:
         """Return the variance at some ``sizes`` of the two doubts, shape (n_sizes, n) [-]."""
@@ -167,7 +207,7 @@ class Comparison:
     @property
     def sizes(self) -> tuple[tuple[float, float], ...]:
         """Shares at which the two doubts are tried, each as likely: of the idealisation, of what no scatter shows."""
-        idealised = (1.0,) if self.idealised is None else IDEALISATION_SHARES
+        idealised = (1.0,) if self.idealised is None else DOUBT_SHARES
         return tuple(product(idealised, (1.0,) if self.unseen is None else UNSEEN_SHARES))
 
 
@@ -217,6 +257,11 @@ def assemble(
         idealised=_filled([(block.idealised, len(block.residual)) for block in blocks], 0.0),
         idle=_filled([(block.idle, len(block.residual)) for block in blocks], False),
         unseen=_filled([(block.unseen, len(block.residual)) for block in blocks], 0.0),
+        judged=_filled([(block.judged, len(block.residual)) for block in blocks], 0.0),
+        judged_columns=np.concatenate(
+            [np.zeros(named[-1], dtype=bool)]
+            + [np.full(block.own.shape[1], block.judged_own) for block in blocks]
+        ),
     )
 
 
@@ -267,4 +312,6 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         idealised=_filled([(part.idealised, len(part.residual)) for part in parts], 0.0),
         idle=_filled([(part.idle, len(part.residual)) for part in parts], False),
         unseen=_filled([(part.unseen, len(part.residual)) for part in parts], 0.0),
+        judged=_filled([(part.judged, len(part.residual)) for part in parts], 0.0),
+        judged_columns=_filled([(part.judged_columns, part.nuisance.shape[1]) for part in parts], False),
     )

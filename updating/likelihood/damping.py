@@ -64,6 +64,7 @@ class Dampings(Quantity):
             level if len(rows) else np.zeros((0, 0)),
             np.zeros((len(rows), 0)),
             rows,
+            judged=self._mounting(now)[rows] ** 2,
         )
 
     def _of_baseline(self, now: Prediction) -> FloatArray:
@@ -73,7 +74,15 @@ class Dampings(Quantity):
 
     def _tolerance(self, now: Prediction) -> FloatArray:
         """Return the whole doubt in the expected damping of each mode: small where a baseline measured it [-]."""
-        stated, before = self.setting.tolerances.damping, self.setting.before
+        mounting = self._mounting(now)
+        return np.where(mounting > 0, mounting, self.setting.tolerances.damping)
+
+    def _mounting(self, now: Prediction) -> FloatArray:
+        """Return how far damping that a baseline measured scatters from mounting to mounting, at the most, (n_modes,).
+
+        Nothing of modes that it has not [-].
+        """
+        before = self.setting.before
         if before is None:
-            return np.full(len(now.frequency), stated)
-        return np.where(before.seen(now) > 0.5, self.doubt, stated)
+            return np.zeros(len(now.frequency))
+        return np.where(before.seen(now) > 0.5, self.doubt, 0.0)

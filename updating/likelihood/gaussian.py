@@ -6,7 +6,7 @@ prior; a misfit of shapes then counts for as much as their noise, judged by all 
 
 How far the idealisation of an effect is off is known as little: it is a judgement of what it may be at most. So its
 size is summed over likewise: a region that is softened just so is not made less believable by a doubt it has no need
-of, and one that is not still has it.
+of, and one that is not still has it. So are doubts of single channels, see :mod:`updating.likelihood.judged`.
 """
 
 from __future__ import annotations
@@ -19,11 +19,9 @@ from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.comparison import Comparison
+from updating.likelihood.judged import Apart, channels_apart
 from updating.likelihood.separate import Beside, separate
-from updating.thresholds import (
-    LARGEST_SENSITIVITY,
-    SHAPE_NOISE_SCALES,
-)
+from updating.thresholds import DOUBT_SHARES, LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +44,8 @@ class Marginal:
         The most probable size of the doubt in the idealisation, as a share of the largest [-].
     unseen : float
         That of the errors that no scatter shows [-].
+    judged : tuple of (int, float)
+        Channels with a judged doubt, by number, and its most probable share of the most [-].
     """
 
     log_likelihood: float
@@ -55,6 +55,11 @@ class Marginal:
     scale: float
     share: float = 1.0
     unseen: float = 1.0
+    judged: tuple[tuple[int, float], ...] = ()
+
+    def settle(self, comparison: Comparison) -> Comparison:
+        """Return a comparison with all doubts at their most probable sizes."""
+        return comparison.settled(self.share, self.unseen, self.judged)
 
 
 def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
@@ -77,13 +82,35 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
-    parts = gaussian(comparison, scales, keep, sizes=comparison.sizes)
+    apart = channels_apart(comparison, keep, comparison.sizes)
+    parts = gaussian(comparison, scales, _without(comparison, keep, apart), sizes=comparison.sizes)
     prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
     score = parts.log_likelihood + prior - np.log(len(parts.sizes))
+    for one in apart:
+        score = score + one.summed[:, None]
     top = np.unravel_index(int(np.argmax(score)), score.shape)
-    return replace(
-        parts.at(int(top[0]), int(top[1])), log_likelihood=float(np.logaddexp.reduce(score, axis=None))
-    )
+    found = _joined(parts.at(int(top[0]), int(top[1])), apart, int(top[0]))
+    return replace(found, log_likelihood=float(np.logaddexp.reduce(score, axis=None)))
+
+
+def _without(comparison: Comparison, keep: BoolArray | None, apart: Sequence[Apart]) -> BoolArray | None:
+    """Return which data (n,) are in no channel apart; None for all."""
+    if not apart:
+        return keep
+    others = ~np.isin(comparison.channel, [one.channel for one in apart])
+    return others if keep is None else others & keep
+
+
+def _joined(found: Marginal, apart: Sequence[Apart], size: int) -> Marginal:
+    """Return a marginal with the channels apart in it, at one size of the other doubts."""
+    shift = found.shift.copy()
+    chi2, count, judged = found.chi2, found.count, []
+    for one in apart:
+        best = int(np.argmax(one.log_likelihood[size]))
+        shift[one.columns] = one.shift[size, best]
+        chi2, count = chi2 + float(one.chi2[size, best]), count + one.count
+        judged.append((one.channel, DOUBT_SHARES[best]))
+    return replace(found, chi2=chi2, count=count, shift=shift, judged=tuple(judged))
 
 
 def _sound(comparison: Comparison) -> bool:

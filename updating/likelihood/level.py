@@ -21,7 +21,10 @@ class Levels(Quantity):
         return self.setting.measured.slope is not None
 
     def block(self, view: View) -> Block:
-        """Return by how much more than predicted frequencies depend on the force, times its mean."""
+        """Return by how much more than predicted frequencies depend on the force, times its mean.
+
+        What no test is free of may be common to all modes, or scatter from mode to mode.
+        """
         test, slope = self.setting.measured, view.now.slope
         assert test.slope is not None
         assert test.slope_sigma is not None
@@ -35,9 +38,10 @@ class Levels(Quantity):
             np.where(known, (level * test.slope_sigma) ** 2 + uneven**2 + self._steady**2, 1.0),
             np.zeros((n, len(self.setting.names))),
             np.zeros((n, 0)),
-            np.zeros((n, 0)),
+            np.where(known, self._steady, 0.0)[:, None],
             np.arange(n),
             idealised=uneven**2 if view.doubt.fidelity else None,
+            judged=np.where(known, self._steady**2, 0.0),
         )
 
     @property

@@ -84,12 +84,14 @@ def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Compar
             nuisance[:, comparison.tolerances[outlier.tolerance]] *= outlier.scale
     idealised = None if comparison.idealised is None else worse * comparison.idealised
     unseen = None if comparison.unseen is None else worse * comparison.unseen
+    judged = None if comparison.judged is None else worse * comparison.judged
     return replace(
         comparison,
         variance=worse * comparison.variance,
         nuisance=nuisance,
         idealised=idealised,
         unseen=unseen,
+        judged=judged,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
+from updating.prediction.window_left import window_turns
 from updating.thresholds import COMPLEXITY_PER_DAMPING, LARGEST_NODE_RATIO, PHASE_DOUBT, PHASE_UNEVENNESS
 
 
@@ -23,22 +24,28 @@ class Phases(Quantity):
         return self.setting.measured.phase is not None and self.setting.measured.has_shapes
 
     def block(self, view: View) -> Block:
-        """Return how far each chain turns each mode beyond what the state does [rad]."""
+        """Return how far each chain turns each mode beyond what the state does [rad].
+
+        Filters turn all alike in proportion to frequency, which is as a delay does; the rest is each mode's.
+        """
         test = self.setting.measured
         assert test.phase_sigma is not None
         left, turns = self._turned(view)
         residual = left + np.pi * turns
         n_chains, n_modes = residual.shape
         columns = np.repeat(PHASE_DOUBT * np.eye(n_modes)[None], n_chains, axis=0).reshape(-1, n_modes)
-        spread = test.phase_sigma**2 + (PHASE_UNEVENNESS * PHASE_DOUBT) ** 2 + self._complexity**2
+        late = PHASE_DOUBT * np.tile(test.frequency / test.frequency.max(), n_chains)
+        judged = (PHASE_UNEVENNESS * PHASE_DOUBT) ** 2 + self._complexity**2
         return Block(
             "phase",
             residual.ravel(),
-            spread.ravel(),
+            (test.phase_sigma**2 + judged).ravel(),
             np.zeros((residual.size, len(self.setting.names))),
-            np.zeros((residual.size, 0)),
+            late[:, None],
             columns,
             np.tile(np.arange(n_modes), n_chains),
+            judged=judged.ravel(),
+            judged_own=True,
         )
 
     def factor(self, view: View) -> FloatArray:
@@ -53,11 +60,12 @@ class Phases(Quantity):
     def _turned(self, view: View) -> tuple[FloatArray, FloatArray]:
         """Return the phases beyond the state's [rad], and by how many half turns these are nearest to zero.
 
-        A delay turns constants, and dampers that couple modes do.
+        A delay turns constants, a window left in does, and dampers that couple modes do.
         """
         test = self.setting.measured
         assert test.phase is not None
         expected = -2 * np.pi * test.frequency * view.state.delay
+        expected = expected + window_turns(test.frequency, view.state.decay, test.recorded_power)
         if view.now.phase is not None:
             expected = expected + view.now.phase
         return test.phase - expected, np.round((expected - test.phase) / np.pi)

@@ -35,6 +35,7 @@ from updating.prediction.bodies import BodyChange, body_changes
 from updating.prediction.prediction import Prediction
 from updating.prediction.sensitivities import sensitivities
 from updating.prediction.stretch import Stretch
+from updating.prediction.window_left import with_window
 from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.chain_phase import chain_phases
 from updating.test_data.measured import Measured
@@ -195,17 +196,14 @@ class Predictor(Displayed):
         if factors:
             by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
-        shift = 1.0 + total.slope * (self.measured.level or 0.0)
-        moved = shift * slowing * self._slowed(total, values, vectors, chosen, damped_modes)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
         product = read.product(whole["w"], whole["w"])
         constants, phase = (product, None) if damped_modes is None else self._made_real(product)
+        frequency, damping = self._read_poles(total, values, vectors, chosen, damped_modes)
         return Prediction(
-            frequency=moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi),
-            damping=self._damping(total, values[chosen], vectors[:, chosen])
-            if damped_modes is None
-            else damped_modes.ratio,
+            frequency=frequency,
+            damping=damping,
             constants=level * constants,
             seen=shapes["w"][read.seen],
             hit=read.at_hit(shapes["w"], 1.0),
@@ -217,6 +215,25 @@ class Predictor(Displayed):
             slope=total.slope + _gained(total, values[chosen], moving[:, chosen]),
             gain=np.asarray(level),
             phase=phase,
+        )
+
+    def _read_poles(
+        self,
+        total: State,
+        values: FloatArray,
+        vectors: FloatArray,
+        chosen: IntArray,
+        damped_modes: Damped | None,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return natural frequencies [Hz] and damping ratios [-] as an identification reads them, (n_modes,) each."""
+        square, own = values[chosen], vectors[:, chosen]
+        shift = 1.0 + total.slope * (self.measured.level or 0.0)
+        moved = shift * layer_slowing(total, square, own)
+        moved = moved * self._slowed(total, values, vectors, chosen, damped_modes)
+        return with_window(
+            moved * np.sqrt(np.where(square > 0, square, np.nan)) / (2 * np.pi),
+            self._damping(total, square, own) if damped_modes is None else damped_modes.ratio,
+            total.decay,
         )
 
     def _chosen(self, values: FloatArray, count: int | None, at_least: int) -> IntArray:
@@ -250,7 +267,7 @@ class Predictor(Displayed):
         modes, omega = vectors[:, near], np.sqrt(np.maximum(elastic[:size], 1e-12))
         viscous, hysteretic = (modes.T @ matrix @ modes for matrix in self._damping_matrices(state))
         rates = 2 * self._ratios(state, modes) * omega + modal_losses(state, elastic[:size], modes)
-        viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates + 2 * state.decay)
+        viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates)
         found = damped(elastic, viscous, len(chosen))
         return found if self.expects(state) else replace(found, ratio=np.full(len(chosen), np.nan))
 
@@ -342,7 +359,7 @@ class Predictor(Displayed):
         c, d = modal_damping(self.reduced, expected, state, values, vectors)
         slow = layer_slowing(state, values, vectors)
         rate = c + modal_losses(state, values, vectors)
-        added = d / (2 * omega**2) + self._ratios(state, vectors) + state.decay / (slow * omega)
+        added = d / (2 * omega**2) + self._ratios(state, vectors)
         return np.asarray(slow * rate / (2 * omega) + added)
 
     def expects(self, state: State) -> bool:

@@ -24,6 +24,7 @@ from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Comparison, assemble
 from updating.likelihood.constants import Constants, scatter_prior
 from updating.likelihood.damping import Dampings
+from updating.likelihood.fading_noise import FadingNoise
 from updating.likelihood.frequency import Frequencies
 from updating.likelihood.gaussian import gaussian
 from updating.likelihood.level import Levels
@@ -324,6 +325,7 @@ class SpecimenProblem:
             Levels(setting),
             Trends(setting),
             UnpairedModes(setting),
+            FadingNoise(setting),
         )
         return tuple(quantity for quantity in every if quantity.present)
 

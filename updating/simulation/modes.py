@@ -8,6 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray
+from updating.prediction.window_left import with_window
 from updating.simulation.model import Simulated
 from updating.simulation.poles import modal_damping
 
@@ -19,7 +20,7 @@ class NaturalModes:
     Parameters
     ----------
     frequency : (n_modes,) array
-        Undamped natural frequencies [Hz].
+        Undamped natural frequencies, moved by an unknown window [Hz].
     damping : (n_modes,) array
         Damping ratios, that of an unknown window included [-].
     shapes : (n_points, n_modes) array
@@ -49,5 +50,5 @@ def natural_modes(model: Simulated, *, count: int | None = None) -> NaturalModes
     values, vectors = values[model.rigid : last], vectors[:, model.rigid : last]
     viscous, structural = (np.diag(d) for d in modal_damping(model.matrices, vectors))
     omega = np.sqrt(np.where(values > 0, values, np.nan))
-    ratios = viscous / (2 * omega) + structural / (2 * omega**2) + model.decay / omega
-    return NaturalModes(omega / (2 * np.pi), ratios, model.rows @ vectors)
+    ratios = viscous / (2 * omega) + structural / (2 * omega**2)
+    return NaturalModes(*with_window(omega / (2 * np.pi), ratios, model.decay), model.rows @ vectors)

@@ -10,6 +10,7 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.display import Displayed, counted
+from identification.fading import Fading
 from identification.hit_errors import HitErrors
 
 if TYPE_CHECKING:
@@ -77,6 +78,8 @@ class Measured(Displayed):
         standard deviation; ``constants`` are turned back by it [rad].
     channel_group : (n_frf,) int array, optional
         Which chain each FRF was measured by.
+    recorded_power : int
+        Which derivative of the displacement was recorded: 2 of accelerations, 0 also where it is unknown [-].
     slope, slope_sigma : (n_modes,) arrays, optional
         Relative change of each frequency per newton of the hits' peak force [1/N].
     level : float, optional
@@ -98,6 +101,8 @@ class Measured(Displayed):
         deviation of what it has for itself, nan where unknown; None where a test does not rove [-].
     common_trend_sigma : float
         Standard deviation of the error that all of them share [-].
+    fading : Fading, optional
+        How the noise fades along the records; None where no hits are known.
     unpaired : Measured, optional
         The modes of the same test that have no partner in the nominal model; None where all have one.
     """
@@ -142,6 +147,8 @@ class Measured(Displayed):
     trend: FloatArray | None = None
     trend_sigma: FloatArray | None = None
     common_trend_sigma: float = 0.0
+    fading: Fading | None = None
+    recorded_power: int = 0
 
     @property
     def own_sigma(self) -> FloatArray:

@@ -7,6 +7,7 @@ import numpy as np
 from acquisition import Dof, ModalData
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.errors import StudyError
+from acquisition.form import FORMS
 from identification import ModalModel
 from identification.scaling.shapes import turned
 from updating.models import Spec
@@ -162,6 +163,7 @@ def measured_from_identified(
     seen, hit = responses.index[left], references.index[right]
     signs = responses.signs[left] * references.signs[right]
     constants = turn(model.constants[both] * signs[:, None], model.constant_sigma[both], seen, hit)
+    recorded = model.frfs.record or model.frfs
     return Measured(
         model.modal.frequency,
         model.modal.frequency_sigma,
@@ -199,6 +201,8 @@ def measured_from_identified(
         trend=None if model.trend is None else model.trend.value,
         trend_sigma=None if model.trend is None else model.trend.sigma,
         common_trend_sigma=0.0 if model.trend is None else model.trend.common_sigma,
+        fading=model.fading,
+        recorded_power=FORMS.index(recorded.form),
         **options,  # type: ignore[arg-type]
     )
 

@@ -16,7 +16,9 @@ from scipy import optimize
 from acquisition.arrays import ComplexArray, FloatArray
 from identification.fit.noise.differences import power_of_differences
 
-_STRONGEST = 40.0
+STRONGEST = 40.0
+"""Largest decay w T of noise over a record that its lines show [-]."""
+
 _PIECE = 16
 _CERTAIN = 2.0  # four standard deviations of the ratio below, for steady noise
 
@@ -49,14 +51,29 @@ def decay_over_record(residual: ComplexArray) -> float:
     residual : (n_frf, n_lines) complex array
         Data minus model [unit of the FRFs].
     """
-    n_frf, n_lines = residual.shape
-    if n_lines < 4 * _PIECE:
-        return 0.0
+    ratio = ratio_of_differences(residual)
+    return 0.0 if ratio is None else _fade(ratio, residual.size)
+
+
+def ratio_of_differences(residual: ComplexArray) -> float | None:
+    """Return the mean square of second differences over that of fourth ones, None of too few lines [-].
+
+    Parameters
+    ----------
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    """
+    if residual.shape[1] < 4 * _PIECE:
+        return None
     second, fourth = _pieces(residual, 2), _pieces(residual, 4)
     level = np.median(fourth, axis=1, keepdims=True)
     level = np.maximum(level, np.finfo(float).tiny + 1e-12 * level.max())
-    ratio = np.median(np.sum(second / level, axis=0) / np.sum(fourth / level, axis=0))
-    return _fade(float(ratio), n_frf * n_lines)
+    return float(np.median(np.sum(second / level, axis=0) / np.sum(fourth / level, axis=0)))
+
+
+def steepness(fade: float) -> float:
+    """Return that ratio of noise that decays so far, w T, over the record [-]."""
+    return roughness(fade, 2) / roughness(fade, 4)
 
 
 def _pieces(residual: ComplexArray, order: int) -> FloatArray:
@@ -72,11 +89,11 @@ def _fade(ratio: float, n_values: int) -> float:
         return 0.0
 
     def excess(fade: float) -> float:
-        return roughness(fade, 2) / roughness(fade, 4) - ratio
+        return steepness(fade) - ratio
 
-    if excess(_STRONGEST) < 0:
-        return _STRONGEST
-    return float(optimize.brentq(excess, 1e-3, _STRONGEST)) if excess(1e-3) < 0 else 0.0
+    if excess(STRONGEST) < 0:
+        return STRONGEST
+    return float(optimize.brentq(excess, 1e-3, STRONGEST)) if excess(1e-3) < 0 else 0.0
 
 
 def at_start(fade: float) -> float:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
-from updating.thresholds import IDEALISATION_SHARES
+from updating.thresholds import DOUBT_SHARES
 
 MODES, NOISE = 6, 1e-3
 
@@ -52,10 +52,10 @@ def test_an_effect_that_is_just_so_loses_little_by_a_doubt_it_has_no_need_of(see
     noise = np.random.default_rng(seed).normal(size=MODES) * NOISE
     noise *= min(1.0, NOISE * np.sqrt(MODES) / np.linalg.norm(noise))
     summed = comparison(noise, size)
-    least = marginal(summed.settled(min(IDEALISATION_SHARES))).log_likelihood
-    assert marginal(summed).log_likelihood > least - np.log(len(IDEALISATION_SHARES))
+    least = marginal(summed.settled(min(DOUBT_SHARES))).log_likelihood
+    assert marginal(summed).log_likelihood > least - np.log(len(DOUBT_SHARES))
     if size >= 0.2:
-        assert marginal(summed).share == min(IDEALISATION_SHARES)
+        assert marginal(summed).share == min(DOUBT_SHARES)
         assert marginal(summed).log_likelihood > marginal(summed.settled(1.0)).log_likelihood + 2
 
 
@@ -67,11 +67,11 @@ def test_an_effect_that_is_far_from_just_so_loses_the_number_of_sizes(seed: int,
     summed = comparison(uneven, size)
     full = marginal(summed.settled(1.0)).log_likelihood
     assert marginal(summed).share == 1
-    assert marginal(summed).log_likelihood >= full - np.log(len(IDEALISATION_SHARES))
+    assert marginal(summed).log_likelihood >= full - np.log(len(DOUBT_SHARES))
 
 
 def test_no_share_is_left_out_of_the_sum() -> None:
     summed = comparison(np.array([3, -3, 3, -3, 3, -3]) * NOISE, 0.1)
-    each = [marginal(summed.settled(share)).log_likelihood for share in IDEALISATION_SHARES]
+    each = [marginal(summed.settled(share)).log_likelihood for share in DOUBT_SHARES]
     assert marginal(summed).log_likelihood == pytest.approx(np.log(np.mean(np.exp(each))))
     assert marginal(replace(summed, idealised=None)).log_likelihood == pytest.approx(each[0])

@@ -52,7 +52,7 @@ def remainder_of(
     point, outliers = best.best, best.candidate.outliers
     comparison = point.comparison
     as_stated = problem.at(replace(best.candidate, outliers=()), point.coordinates, point.about)
-    stated = as_stated.settled(point.marginal.share, point.marginal.unseen).noise(point.marginal.scale)
+    stated = point.marginal.settle(as_stated).noise(point.marginal.scale)
     off = np.where(comparison.of_pairs, np.abs(point.left_over) / np.sqrt(stated), 0.0)
     group = cells(comparison)
     strength = np.sqrt(group.sums(off**2) / np.maximum(group.sums(comparison.of_pairs.astype(float)), 1.0))

@@ -88,6 +88,8 @@ def compared(problem: SpecimenProblem, explanation: Explanation, field: FloatArr
         }
     )
     found = problem.compare(state.plus(changed), stated, doubt=candidate.doubt_on(problem.predictor))
+    if len(best.coordinates):  # its parameters become nuisances, which join the channels
+        found = found.channels_settled(best.marginal.judged)
     return with_outliers(found, candidate.outliers)
 
 

@@ -19,6 +19,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.generic.columns import PROPERTIES, Columns, columns, compared, correlations
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import sensitivities
+from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import Marginal, marginal
 from updating.problem.specimen import SpecimenProblem
 
@@ -149,16 +150,16 @@ def _kinds(here: Columns, grid: Grid, lengths: int) -> list[Kind]:
     return [replace(one, loss=loss, gain=gain) for one in structure for loss in losses for gain in gains]
 
 
-def _nuisances(here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray) -> list[FloatArray]:
-    """Return what a field of one kind changes per standard deviation, stiffness and mass first, and all nuisances."""
+def _with(here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray) -> Comparison:
+    """Return the data with what a field of one kind changes per standard deviation, stiffness and mass first."""
     parts = [kind.amplitude * here.regions[name] @ factors[kind.length] for name in kind.properties]
     parts += [kind.loss * here.loss] * bool(kind.loss) + [kind.gain * here.gain] * bool(kind.gain)
-    return [*parts, here.comparison.nuisance, free]
+    return here.comparison.beside(np.hstack([np.zeros((len(free), 0)), *parts]), free)
 
 
 def _marginal(here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray) -> Marginal:
     """Integrate a field of one kind out, and the parameters (n, k) of the set beside it."""
-    return marginal(replace(here.comparison, nuisance=np.hstack(_nuisances(here, kind, factors, free))))
+    return marginal(_with(here, kind, factors, free))
 
 
 def _height(
@@ -185,8 +186,8 @@ def _most_probable(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the most probable logarithms of the factors, and their standard deviations, (2, r) each [-]."""
     found = _marginal(here, kind, factors, free)
-    whole = np.hstack(_nuisances(here, kind, factors, free))
-    noise = here.comparison.settled(found.share, found.unseen).noise(found.scale)
+    settled = found.settle(_with(here, kind, factors, free))
+    whole, noise = settled.nuisance, settled.noise(found.scale)
     precision = np.eye(whole.shape[1]) + (whole.T / noise) @ whole
     spread, lower = np.linalg.inv(precision), kind.amplitude * factors[kind.length]
     field, sigma = np.zeros((2, len(PROPERTIES), len(lower)))

@@ -136,7 +136,7 @@ def _linearised(
 ) -> Point:
     comparison = problem.at(candidate, coordinates, about)
     found = marginal(comparison, keep)
-    return Point(coordinates, comparison.settled(found.share, found.unseen), found, about)
+    return Point(coordinates, found.settle(comparison), found, about)
 
 
 def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:
