@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from updating.effects.base import Effect, Parameter, Twin, Values
+from updating.effects.base import Effect, Parameter, Values
 from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -14,14 +14,16 @@ class ExponentialWindow(Effect):
     name = "exponential_window"
     channel = "measurement"
     summary = "An exponential window is still in the damping: it adds one decay rate to every mode."
-    footprint = "Damping ratios rise in inverse proportion to frequency; nothing else changes."
+    footprint = (
+        "Damping ratios rise in inverse proportion to frequency, the constants of low modes turn by twice what that "
+        "adds (accelerations), and the noise behind a hit fades; shapes and stiffness stay."
+    )
     models = ("beam", "plate", "matrices")
     phrase = "an exponential window left in the data"
     equivalent_to = ("uniform_damping",)
-    twin = Twin(
-        "uniform_damping", "both add one decay to every mode", "look the window up in the analyser's settings"
+    separated_by = (
+        "phases of low modes and the noise of the hits; else the analyser's settings, or a repeat with another window"
     )
-    separated_by = "the analyser's settings, or a repeat with another window or a longer record"
 
     def damps(self, parameter: str = "") -> bool:
         """Tell that a decay is no frequency."""
