@@ -9,7 +9,7 @@ from typing import Any
 from acquisition.errors import InputError
 
 # How like a known key an unknown one must be to count as misspelt, by difflib's ratio [-]: one wrong or missing
-# letter of the shortest, "node", gives 0.75. Nearer to 1 lets more of them pass for keys of somebody else's.
+# letter of the shortest, "node", gives 0.75. Nearer to 1 lets more of them pass for keys of other programs.
 _RESEMBLES = 0.75
 
 

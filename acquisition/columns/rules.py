@@ -26,7 +26,7 @@ class FileRule:
     Parameters
     ----------
     match : str
-        Pattern of file names, as ``point_07_*.csv``; ``{node}`` and ``{direction}`` stand for what the name says,
+        Pattern of file names, as ``point_07_*.csv``; ``{node}`` and ``{direction}`` stand for what the name states,
         ``P{node}_*.csv``.
     node : int or None
         Node in these files; None for that in the name, or that of the column.
@@ -76,7 +76,7 @@ def _pattern(match: str) -> re.Pattern[str]:
 
 
 def check_rule(rule: FileRule, where: str) -> None:
-    """See that a rule says something, each thing once.
+    """Check that a rule states something, each thing once.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def check_rule(rule: FileRule, where: str) -> None:
     placed = rule.named or rule.node is not None or rule.direction or DIRECTION in rule.match
     if not (placed or rule.unit or rule.scale is not None):
         raise InputError(
-            f"{where}: says nothing of these files; add node = ..., unit or scale, or write {{node}} into match, "
+            f"{where}: states nothing about these files; add node = ..., unit or scale, or write {{node}} into match, "
             'as "P{node}_*.csv"'
         )
 

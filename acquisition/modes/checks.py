@@ -27,7 +27,7 @@ def checked(modal: ModalData, path: Path, *, percent: str = "the column damping_
     path : Path
         The file, for messages.
     percent : str
-        How a file of this kind says that damping is in per cent, for messages.
+        How a file of this kind states that damping is in per cent, for messages.
 
     Raises
     ------
