@@ -104,7 +104,7 @@ def way(values: Values, label: str) -> int:
     """
     stated = values.get(label)
     if stated not in WAYS:
-        raise StudyError(f"{label} = {stated!r} is no direction; use {', '.join(WAYS)}")
+        raise StudyError(f"{label} = {stated!r} is not a direction; use {', '.join(WAYS)}")
     return WAYS.index(str(stated))
 
 

@@ -15,7 +15,7 @@ from updating.prediction.prediction import Prediction
 from updating.thresholds import IDEALISATION_SHARES, UNSEEN_SHARES
 
 CHANNELS = ("frequency", "damping", "frf", "phase", "level", "trend", "unpaired")
-"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force, change over
+"""The data: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force, change over
 the test; and all that is known of modes without a partner in the nominal model."""
 
 SCALED = "frf"
@@ -48,7 +48,7 @@ class Block:
     idealised : (n,) array, optional
         What of the variance a candidate's idealisation adds, mode by mode, at the most [-]; left out, nothing.
     idle : (n,) bool array, optional
-        Which data the state says nothing of; left out, none.
+        Which data the state does not predict; left out, none.
     unseen : (n,) array, optional
         What of the variance is an error that no scatter shows, at the most [-]; left out, nothing.
     """
@@ -96,7 +96,7 @@ class Comparison:
     idealised : (n,) array, optional
         What of the variance the candidate's idealisation adds, at the most [-]; left out, its size is settled.
     idle : (n,) bool array, optional
-        Which data the state says nothing of, so that none of them fits or does not; left out, none.
+        Which data the state does not predict, so that none of them fits or does not; left out, none.
     unseen : (n,) array, optional
         What of the variance is an error that no scatter shows, at the most [-]; left out, its size is settled.
     """
@@ -137,7 +137,7 @@ class Comparison:
 
     @property
     def stated(self) -> BoolArray:
-        """Which data the state says something of, (n,)."""
+        """Which data the state predicts, (n,)."""
         return np.ones(len(self.residual), dtype=bool) if self.idle is None else ~self.idle
 
     def noise(self, scale: float) -> FloatArray:
@@ -221,7 +221,7 @@ def assemble(
 
 
 def _filled(parts: Sequence[tuple[_Array | None, int]], nothing: float) -> _Array | None:
-    """Return what parts of the data say in one, ``nothing`` where one says nothing; None where all do.
+    """Return what parts of the data say in one, ``nothing`` where one has no prediction; None where all have.
 
     Each part comes with the number of its data.
     """

@@ -87,7 +87,7 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
 
 
 def _sound(comparison: Comparison) -> bool:
-    """Tell whether a prediction is finite and no sensitivity is beyond all measure."""
+    """Return whether a prediction is finite and no sensitivity is beyond all measure."""
     whole = np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()
     return bool(
         whole

@@ -52,7 +52,7 @@ def modal_damping(matrices: Matrices, vectors: FloatArray) -> tuple[FloatArray, 
 
 
 def uncoupled(damping: FloatArray) -> bool:
-    """Tell whether damping leaves the undamped modes alone."""
+    """Return whether damping leaves the undamped modes alone."""
     own = np.sqrt(np.abs(np.diag(damping)))
     scale = np.outer(own, own) + UNCOUPLED * np.abs(damping).max(initial=0.0)
     off = np.abs(damping - np.diag(np.diag(damping)))

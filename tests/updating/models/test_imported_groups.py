@@ -209,7 +209,8 @@ def test_names_that_the_model_does_not_have(predictor: Predictor) -> None:
         ("local_stiffness", {"region": "web", "loss": 0.1}, "region = 'web' is none of the model's: beam_1, beam_2"),
         ("joint", {"joint": "bolt"}, "joint = 'bolt' is none of the model's: joint_1"),
         ("ground_spring", {"at": "roof", "along": "x", "stiffness": 1.0}, "at = 'roof' is none"),
-        ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is no direction"),
+        ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is not a "
+                                                                                    "direction"),
     ):  # fmt: skip
         with pytest.raises(StudyError, match=message):
             LIBRARY[name].state(predictor, values)

@@ -89,8 +89,8 @@ REFUSED = {
     ),
     "complex": (lambda t: t.replace("       6       2", "       6       4"), "form 6 and type 4; .* real"),
     "rectangular": (lambda t: t.replace("       6       2", "       2       2"), "form 2 and type 2"),
-    "a word": (lambda t: t.replace("D+0", "X+0"), "is no number; punch"),
-    "a shifted field": (lambda t: t.replace("*       ", "*   ", 3), "node and direction are|is no number"),
+    "a word": (lambda t: t.replace("D+0", "X+0"), "is not a number; punch"),
+    "a shifted field": (lambda t: t.replace("*       ", "*   ", 3), "node and direction are|is not a number"),
 }
 
 

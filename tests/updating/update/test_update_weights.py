@@ -103,7 +103,7 @@ def test_a_parameter_that_runs_to_the_end_of_its_range_says_so() -> None:
         ({"parameters": ["length.depth"]}, "no parameter 'depth'"),
         ({"parameters": ["E", "E"]}, "stands twice"),
         ({"parameters": []}, "no parameters"),
-        ({"parameters": ["sensor_mass"]}, "do not say where"),
+        ({"parameters": ["sensor_mass"]}, "do not state where"),
         ({"parameters": ["local_stiffness.x"]}, "also needs extent, loss"),
         ({"shared": ["density"]}, "updated in no study"),
         ({"weights": "absolute"}, "unknown weights"),

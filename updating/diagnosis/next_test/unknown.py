@@ -21,7 +21,7 @@ def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...
     site : Site
         The specimen.
     found : Search
-        What was weighed.
+        What was compared.
     fewest : int
         With fewer points more of them are asked for: shapes of a few points are alike.
     """
@@ -42,7 +42,7 @@ def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...
             "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
         )
     if len(test.points) < fewest and spec.outlined:
-        stated.append("measure at five points or more: where shapes miss says where to look")
+        stated.append("measure at five points or more: the place where shapes deviate shows where to look")
     if spec.clamped and spec.outlined:
         stated.append("hang the specimen up free and test it: is the gap the clamp's?")
     where = f"{site.title}: " if site.title else ""

@@ -24,7 +24,7 @@ class ExponentialWindow(Effect):
     separated_by = "the analyser's settings, or a repeat with another window or a longer record"
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that a decay is no frequency."""
+        """State that a decay is no frequency."""
         return True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:

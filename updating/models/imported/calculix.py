@@ -24,7 +24,7 @@ def read_triplets(path: Path) -> Sparse:
     """
     row, column, value = columns_of(_plain(path.read_bytes()), "iif", path)
     if not len(value):
-        raise StudyError(f"{path}: is empty; did ccx stop early? its .sta and .dat files tell")
+        raise StudyError(f"{path}: is empty; did ccx stop early? see its .sta and .dat files")
     if min(row.min(), column.min()) < 1:
         raise StudyError(f"{path}: row or column 0 or below; CalculiX counts from 1")
     order = int(max(row.max(), column.max()))

@@ -74,7 +74,7 @@ class Labelled:
 
 
 def is_labelled(path: Path) -> bool:
-    """Tell whether a file is of this kind: by its ending, or a first line of five numbers between commas."""
+    """Return whether a file is of this kind: by its ending, or a first line of five numbers between commas."""
     if path.suffix.lower() in PUNCHED:
         return True
     if path.suffix.lower() != ".mtx" or not path.is_file():
@@ -210,7 +210,7 @@ def _entry(line: str, where: str) -> tuple[int, int, float]:
     node, direction = _whole(fields[:2], where)
     word = re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", fields[2].upper().replace("D", "E"))
     if not NUMBER.fullmatch(word) or not np.isfinite(float(word)):
-        raise StudyError(f"{where}: {fields[2]!r} is no number; punch the file anew")
+        raise StudyError(f"{where}: {fields[2]!r} is not a number; punch the file anew")
     return node, direction, float(word)
 
 

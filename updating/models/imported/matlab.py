@@ -59,7 +59,7 @@ def _matrix(array: Array, path: Path) -> Sparse:
 
 
 def _twice(matrix: sparse.coo_array) -> bool:
-    """Tell whether an entry stands twice, as none does in a file of MATLAB: a sum would be a wrong number."""
+    """Return whether an entry stands twice, as none does in a file of MATLAB: a sum would be a wrong number."""
     place = np.asarray(matrix.row, dtype=np.int64) * matrix.shape[1] + matrix.col
     return len(np.unique(place)) < len(place)
 
