@@ -43,7 +43,7 @@ class Handed:
 
 
 def study_text(opened: Opened, content: Mapping[str, Any], title: str, folder: Path) -> str:
-    """Return the study as a file of another folder says it.
+    """Return the study as a file in another folder.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The page of the model: what the study says, and what changes if effects are put into it."""
+"""The page of the model: what the study states, and what changes if effects are put into it."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class Moved:
 
 
 def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, why: str) -> dict[str, Any]:
-    """Return what the study says, and where it has a model, pairs, MAC and what can be moved."""
+    """Return what the study states, and where it has a model, pairs, MAC and what can be moved."""
     page: dict[str, Any] = {
         "text": toml_text(content),
         "fields": _fields(content, study),
@@ -144,7 +144,7 @@ def _factors(spec: Spec) -> list[dict[str, Any]]:
 
 
 def _scales(spec: Spec, name: str, *, regional: bool = False) -> bool:
-    """Tell whether a factor means something to a model; imported matrices know few."""
+    """Return whether a factor means something to a model; imported matrices have few."""
     return spec.imported is None or spec.imported.obstacle(name, regional=regional) is None
 
 

@@ -206,7 +206,7 @@ class Study(Strict):
         return Tolerances(values, damping, parts, bounds)
 
     def accepted(self) -> tuple[tuple[str, dict[str, Any]], ...]:
-        """Return the effects put into the model, with the values of their parameters and the points they speak of.
+        """Return the effects put into the model, with the values of their parameters and the points they name.
 
         Raises
         ------

@@ -36,7 +36,7 @@ def fleet(tmp_path: Path) -> Path:
 
 
 def make_fleet(folder: Path) -> Path:
-    """Two studies that work, deep in folders, two that do not, and what is no study."""
+    """Two studies that work, deep in folders, two that do not, and what is not a study."""
     shutil.copytree(SAMPLES / "beam_dry", folder / "b" / "beam")
     study = folder / "b" / "beam" / "published.toml"
     (folder / "b" / "beam" / "study.toml").unlink()

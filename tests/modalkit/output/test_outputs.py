@@ -181,7 +181,7 @@ def test_figures_replace_figures_only(tmp_path: Path) -> None:
 def test_a_journal_cuts_nothing_off_the_file_of_another(tmp_path: Path, content: str) -> None:
     path = tmp_path / "log.jsonl"
     path.write_text(content, encoding="utf-8")
-    with pytest.raises(InputError, match="no store of a run"):
+    with pytest.raises(InputError, match="not a store of a run"):
         Journal(path, resume=True)
     assert path.read_text(encoding="utf-8") == content
 

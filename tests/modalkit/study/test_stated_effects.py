@@ -49,7 +49,7 @@ def test_the_command_line_takes_units() -> None:
     assert parse_effect("lumped_mass:mass=20g,x=100mm")[1] == {"mass": 0.02, "x": 0.1}
     assert parse_effect("E:factor=88%")[1] == {"factor": 0.88}
     assert parse_effect("clamp_rotation:stiffness=4 kN m/rad per m", "plate")[1] == {"stiffness": 4000.0}
-    with pytest.raises(InputError, match="mass: '20 mm' is no quantity in kg"):
+    with pytest.raises(InputError, match="mass: '20 mm' is not a quantity in kg"):
         parse_effect("lumped_mass:mass=20 mm,x=0.1")
 
 
