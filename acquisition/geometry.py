@@ -36,7 +36,7 @@ class Geometry(Displayed):
     Raises
     ------
     InputError
-        If a node number stands twice, the shapes do not agree, or a line ends at a node that does not exist.
+        If a node number is given twice, the shapes do not agree, or a line ends at a node that does not exist.
     """
 
     nodes: tuple[int, ...]

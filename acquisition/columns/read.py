@@ -270,7 +270,7 @@ def _points(records: Sequence[_Record], layout: Layout) -> tuple[Hits, ...]:
 
 
 def _check_once(records: Sequence[_Record]) -> None:
-    """Check that no record of a point stands twice: noise makes any two hits differ.
+    """Check that no record of a point is given twice: noise makes any two hits differ.
 
     Equal hits of a simulation without noise are refused, too: no rule distinguishes them from copies on a quiet
     recorder of few bits, and one of them holds the information of all.

@@ -87,7 +87,7 @@ def check_rule(rule: FileRule, where: str) -> None:
         count = rule.match.count(word)
         if count > 1 or (count and given):
             raise InputError(
-                f"{where}: {word} stands once in match, and not beside a key of that name; mend the rule"
+                f"{where}: {word} stands once in match, and not beside a key of that name; correct the rule"
             )
     placed = rule.named or rule.node is not None or rule.direction or DIRECTION in rule.match
     if not (placed or rule.unit or rule.scale is not None):
@@ -120,6 +120,6 @@ def check_rules(rules: Sequence[FileRule], files: Sequence[Path], source: str) -
             else f"{named[0]!r} takes the nodes from the names"
         )
         raise InputError(
-            f"{lost[0]}: no [[file]] rule of {source} matches it, and {what}; correct the one or the other, or where "
-            "it was hit is a guess"
+            f"{lost[0]}: no [[file]] rule of {source} matches it, and {what}; correct one of them, because "
+            "otherwise the hit point is a guess"
         )

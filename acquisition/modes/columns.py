@@ -60,7 +60,7 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
     for name in map(str, table.columns):
         first, _, copy = name.rpartition(".")
         if copy.isdigit() and first in table.columns:  # as pandas names a heading that was there before
-            raise InputError(f"{path}: column {first[:40]!r} stands there twice; leave one out")
+            raise InputError(f"{path}: column {first[:40]!r} is given twice; leave one out")
         if plain(name) in (*known, *PASSED) or part_of(name) is not None or plain(name).startswith(ASIDE):
             continue
         begins = name.strip().lower().startswith(("damping", "zeta"))

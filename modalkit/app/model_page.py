@@ -260,7 +260,7 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
 
 
 def _frf(identified: ModalModel, row: int, predictor: Predictor, paired: Paired) -> dict[str, Any] | None:
-    """Return an FRF with the model's; None where it is none of the test's."""
+    """Return an FRF with the model's; None where it is not one of the test's."""
     frfs = identified.frfs.select([row])
     try:
         both = correlate_frfs(frfs, predictor.measured, predictor, predictor.predict(), paired)

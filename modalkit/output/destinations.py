@@ -145,7 +145,7 @@ def check_output(path: Path, kind: Kind) -> None:
         raise InputError(f"{path}: is read-only; name another file, as {_free(path, kind)}")
     if path.stat().st_size and not kind.known(path):
         raise InputError(
-            f"{path}: stands there and is not {kind.name}; name another file, as {_free(path, kind)}, or remove it"
+            f"{path}: exists and is not {kind.name}; name another file, as {_free(path, kind)}, or remove it"
         )
 
 

@@ -381,10 +381,10 @@ def of_no_library_text(diagnosis: Diagnosis) -> str:
     if other is None or not diagnosis.ranking:
         return ""
     first = " + ".join(diagnosis.ranking[0].effects)
-    leaves = "something" if other.beside > diagnosis.rules.something_left else "nothing"
+    evidence = "evidence" if other.beside > diagnosis.rules.something_left else "no evidence"
     return (
-        f"a cause outside the library: {probability(other.probability)}; evidence for one besides {first}: "
-        f"{leaves} (logarithm of the Bayes factor {other.beside:+.1f})"
+        f"a cause outside the library: {probability(other.probability)}; {evidence} for one besides {first} "
+        f"(logarithm of the Bayes factor {other.beside:+.1f})"
     )
 
 

@@ -172,7 +172,7 @@ def _moving(modal: ModalData, both: bool) -> str:
 
 def _turn(placed: bool) -> str:
     lines = "Lines are the test's own; surfaces stand only where these close one. "
-    return (lines if placed else "") + "Drag to turn, or use the arrow keys; plus and minus bring it near."
+    return (lines if placed else "") + "Drag to turn, or use the arrow keys; plus and minus zoom."
 
 
 def _beside(session: Session | None) -> tuple[Beside | None, str]:

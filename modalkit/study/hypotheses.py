@@ -36,7 +36,7 @@ def check_names(tables: Sequence[HypothesisTable]) -> None:
     """
     names = [table.name for table in tables]
     if twice := [name for i, name in enumerate(names) if name in names[:i]]:
-        raise StudyError(f"[[hypothesis]] {twice[0]!r} stands twice; give each its own name")
+        raise StudyError(f"[[hypothesis]] {twice[0]!r} is given twice; give each its own name")
 
 
 def with_hypotheses(

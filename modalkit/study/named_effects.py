@@ -59,7 +59,7 @@ def parse_effect(
     for entry in filter(None, (part.strip() for part in rest.split(","))):
         parameter, equals, stated = (part.strip() for part in entry.partition("="))
         if parameter in values:
-            raise InputError(f"--effect {text}: {parameter} stands twice")
+            raise InputError(f"--effect {text}: {parameter} is given twice")
         if parameter in effects[name].labels:
             values[parameter] = _points(text, parameter, stated)
             continue

@@ -212,7 +212,7 @@ class Study(Strict):
         ------
         StudyError
             If one is unknown, or a value is neither a number nor, where points are meant, node numbers; or if one
-            stands twice that can be there but once.
+            is given twice that can be there but once.
         """
         if self.model is None:
             return ()

@@ -73,7 +73,7 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
 
 
 def check_repeated(names: Sequence[str]) -> None:
-    """See that no effect stands twice that a structure or a test has but once.
+    """See that no effect is given twice that a structure or a test has but once.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def check_repeated(names: Sequence[str]) -> None:
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and not LIBRARY[name].several]
     if twice:
         raise StudyError(
-            f"[[model.effect]] {twice[0]} stands twice, and there is but one of it; put both into one"
+            f"[[model.effect]] {twice[0]} is given twice, but it can occur only once; combine both entries"
         )
 
 
@@ -124,7 +124,7 @@ def nodes(label: str, value: Any) -> int | tuple[int, ...]:
     Raises
     ------
     StudyError
-        If the value is something else, or a node stands twice.
+        If the value is something else, or a node is given twice.
     """
     several = label == SOME
     given = list(value) if several and isinstance(value, list | tuple) else [value]

@@ -456,7 +456,7 @@ class UpdateTable(Strict):
         """See that no parameter is named twice in a list, or in a stage, and that no stage is empty."""
         for names in value if value and isinstance(value[0], list) else [value or []]:
             if twice := [name for i, name in enumerate(names) if name in names[:i]]:
-                raise ValueError(f"{twice[0]!r} stands twice")
+                raise ValueError(f"{twice[0]!r} is given twice")
             if value and not names:
                 raise ValueError("a stage without parameters; name some, or leave it out")
         return value

@@ -106,7 +106,7 @@ class Journal:
         if not os.fstat(self._file).st_size:
             return ()
         if not resume:
-            raise InputError(f"{self.path}: stands there; --resume goes on with it, or name another file")
+            raise InputError(f"{self.path}: exists; continue it with --resume, or name another file")
         documents, size = read_journal(self.path)
         if not (is_store(documents) or (not documents and is_torn_header(self.path.read_bytes()))):
             raise InputError(f"{self.path}: is not a store of a run; name another file")

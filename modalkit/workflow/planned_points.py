@@ -126,7 +126,8 @@ def _of_node(node: int, spec: Spec) -> FloatArray:
     here = np.flatnonzero(places.node == node)
     if not len(here):
         raise StudyError(
-            f"node {node} is none of the model's, which reach from {places.node.min()} to {places.node.max()}"
+            f"node {node} is not one of the model's, which reach from {places.node.min()} to "
+            f"{places.node.max()}"
         )
     return np.asarray(places.at[here[0]])
 

@@ -106,7 +106,7 @@ def update_frfs(
     Raises
     ------
     StudyError
-        If a parameter does not exist, stands twice, or there are more of them than data.
+        If a parameter does not exist, is given twice, or there are more of them than data.
     EstimationError
         If no measured mode has a partner.
     """

@@ -179,7 +179,7 @@ def _as_stated(measured: Measured, prediction: Prediction, keep: BoolArray) -> B
     Raises
     ------
     EstimationError
-        If a stated partner is none of the model's modes.
+        If a stated partner is not one of the model's modes.
     """
     if measured.partners is None:
         return keep

@@ -39,7 +39,7 @@ def damped_modes(model: Simulated) -> ComplexModes:
         )
     values, vectors = linalg.eigh(model.matrices.stiffness, model.matrices.mass)
     if values[0] <= 0:
-        raise StudyError("the model has lost its stiffness in this state: an effect took more than there is")
+        raise StudyError("the model has no stiffness left in this state: an effect removed too much")
     viscous, structural = modal_damping(model.matrices, vectors)
     if uncoupled(viscous) and uncoupled(structural):
         return _alone(vectors, values + 1j * np.diag(structural), np.diag(viscous))

@@ -39,7 +39,7 @@ class Measured(Displayed):
     points : (n_points, dim) array
         Test points in model axes [m].
     nodes : tuple of int
-        Their node numbers; one that moves in two directions stands twice.
+        Their node numbers; one that moves in two directions is given twice.
     seen, hit : (n_frf,) int arrays
         Point of the response and of the force of each FRF; ``hit`` is -1 where only a shape is known.
     constants, constants_sigma : (n_frf, n_modes) arrays

@@ -77,7 +77,7 @@ def _file_and_number(record: Measurement) -> object:
 def _by_label(
     forces: Sequence[Measurement], answers: dict[Dof, list[Measurement]], label: _Label
 ) -> list[Hit] | None:
-    """Pair records of the same label; None if a label is missing, stands twice, or never matches."""
+    """Pair records of the same label; None if a label is missing, is given twice, or never matches."""
     lists = [list(forces), *answers.values()]
     labels = [[label(m) for m in list_] for list_ in lists]
     if any("" in names or len(set(names)) < len(names) for names in labels):

@@ -94,7 +94,7 @@ class ModeSet:
 
     @property
     def key(self) -> tuple[float, ...]:
-        """What a mode that stands twice has in common: frequency, damping or eigenvalue, and those of the ID lines."""
+        """What a mode given twice has in common: frequency, damping or eigenvalue, and those of the ID lines."""
         stated = (
             (self.eigenvalue.real, self.eigenvalue.imag)
             if self.is_complex

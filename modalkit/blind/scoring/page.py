@@ -265,7 +265,7 @@ def _channels(score: Score) -> Section:
 def _closing(score: Score) -> Section:
     columns = {
         "|stated - true| [points of %]": (closing.MISSED, value_text),
-        "said": (closing.STATED, _per_cent),
+        "stated": (closing.STATED, _per_cent),
         "true": (closing.TRUE, _per_cent),
         "above the band": (closing.BEYOND, _per_cent),
         "within 10 points": (closing.MET, share_text),

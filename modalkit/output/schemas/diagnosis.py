@@ -90,7 +90,7 @@ class RankedEntry(TypedDict):
 
     effects: Annotated[
         Sequence[str],
-        "the set; one that occurs twice stands twice; `something_else` is a cause in no library",
+        "the set; one that occurs twice is listed twice; `something_else` is a cause in no library",
     ]
     probability: Annotated[
         float, "of this set, among all compared, no effect at all, and a cause in no library [-]"

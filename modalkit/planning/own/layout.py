@@ -37,7 +37,7 @@ class Layout:
     roving : bool
         Whether it is the sensor that moves.
     drive : int or None
-        Station where the end that stays sits, where it is none of the test's.
+        Station where the end that stays sits, where it is not one of the test's.
     """
 
     blank: Measured

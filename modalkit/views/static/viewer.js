@@ -8,7 +8,7 @@ export function viewer(root, { kept = false } = {}) {
   const canvas = h("canvas", {
     tabindex: "0",
     role: "img",
-    "aria-label": "the structure as it moves; arrow keys turn it, plus and minus bring it near",
+    "aria-label": "the structure as it moves; arrow keys turn it, plus and minus zoom",
   });
   const tip = h("div", { class: "tip", hidden: true });
   const frame = h("div", { class: "canvas" }, canvas, tip);

@@ -215,5 +215,5 @@ def test_a_comma_that_ends_every_line_makes_no_column(tmp_path: Path) -> None:
 def test_a_heading_that_stands_twice_is_called_so(tmp_path: Path) -> None:
     path = tmp_path / "modes.csv"
     path.write_text("frequency,sigma,sigma\n10.5,0.1,0.2\n")
-    with pytest.raises(InputError, match="column 'sigma' stands there twice"):
+    with pytest.raises(InputError, match="column 'sigma' is given twice"):
         read_modes(path)

@@ -127,7 +127,7 @@ def test_more_trials_may_be_asked_for_later(store: Path) -> None:
 
 def test_a_store_is_not_overwritten_without_being_told(store: Path) -> None:
     before = store.read_bytes()
-    with pytest.raises(InputError, match="--resume goes on with it"):
+    with pytest.raises(InputError, match="continue it with --resume"):
         run_blind(1, SEED, plan=FAST, diagnose=always_none, store=store)
     assert store.read_bytes() == before
 

@@ -261,7 +261,7 @@ def test_where_frequencies_alone_are_known_shapes_are_proposed(tmp_path: Path) -
 
 
 def test_a_mode_without_a_partner_in_the_model_does_not_stand_in_the_way(tmp_path: Path) -> None:
-    """A table of modes of which one is none of the model's is forecast by the others."""
+    """A table of modes of which one is not one of the model's is forecast by the others."""
     rows = ["frequency,sigma,2+X,4+X,6+X"]
     own = np.sin(np.outer((2, 4, 6), (2 * np.arange(1, 4) - 1) * np.pi / 13))
     for f, shape in zip(closed_form({}), own.T, strict=False):
@@ -355,7 +355,7 @@ def test_a_plate_is_forecast_by_its_own_model(tmp_path: Path) -> None:
 REFUSED = [
     ({"test": ""}, "the points to be hit are not stated; give .test. points"),
     ({"test": "points = [0.1, 0.2]"}, "0.1 is a place along a beam; write a node and its direction"),
-    ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is none of the model's, which reach from 1 to 6"),
+    ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is not one of the model's, which reach from 1 to 6"),
     ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
     ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
     (

@@ -154,7 +154,7 @@ REFUSED = [
     (STUDY.replace("7850.0", "7.85e-9"), "density = 7.85e-09: no solid weighs so little; it is in kg/m3"),
     (STUDY.replace("210e9", "inf"), "model.material.E: .*finite"),
     (STUDY + '[[model.region]]\nname = ""\nx = [0, 1]\n', "model.region.0.name: "),
-    (STUDY + '[update]\nparameters = ["E", "E"]\n', "update.parameters: .*'E' stands twice"),
+    (STUDY + '[update]\nparameters = ["E", "E"]\n', "update.parameters: .*'E' is given twice"),
     (
         STUDY + '[update]\nmethod = "frf"\nstages = [["E"], []]\n',
         "update.stages: .*a stage without parameters",

@@ -78,7 +78,7 @@ def test_several_of_one_name_stand_where_there_may_be_several(tmp_path: Path) ->
     assert read_study(path).accepted() == tuple(("lumped_mass", {"mass": 0.005, "x": x}) for x in (0.1, 0.2))
     modulus = '\n[[model.effect]]\nname = "E"\nfactor = 0.9\n'
     path.write_text(text + modulus + modulus)
-    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] E stands twice"):
+    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] E is given twice"):
         read_study(path).accepted()
 
 

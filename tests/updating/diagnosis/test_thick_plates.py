@@ -51,7 +51,7 @@ def test_nothing_is_named_where_shear_is_all_that_is_missing(theory: str) -> Non
     said = " ".join(found.warnings)
     thin = theory == "kirchhoff"
     assert ("every set of causes was compared with and without" in said) == thin
-    assert ('theory = "mindlin" has them' in said) == thin
+    assert ('theory = "mindlin" includes them' in said) == thin
     why = str(found.not_examined["shear"])
     assert ("added to every set" in why) == thin
     assert ("has it already" in why) != thin

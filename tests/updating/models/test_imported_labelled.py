@@ -116,7 +116,7 @@ def test_nodes_of_another_model_are_refused(tmp_path: Path) -> None:
 
 
 LOST = {
-    "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "stands twice"),
+    "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "is given twice"),
     "the first column": (lambda lines: [*lines[:3], *lines[4:]], "without a column before it"),
     "the first column run into its header": (
         lambda lines: [*lines[:3], "DMIG                 10               3 1.0D+06", *lines[5:]],

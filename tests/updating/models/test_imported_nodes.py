@@ -45,8 +45,8 @@ WRONG_TABLES = [
     ("node,x,y,z,direction,row\n1,0,0,0,1,1\n1,0.2,0,0,3,2\n", "node 1 stands at two places"),
     ("node,x,y,z,direction,row\n1,0,0,0,3,1,7\n2,0,0,0,3,2,7\n", "more values than the header has names"),
     ("node;x;y;z;direction;row\n1;0;0;0;3;1\n", "separated by commas"),
-    ("node,x,y,z,direction,row,setz\n1,0,0,0,3,1,tip\n", "column 'setz' is none of node, x"),
-    ("node,x,y,z,direction,row,X\n1,0,0,0,3,1,0\n", "column 'x' .* stands twice"),
+    ("node,x,y,z,direction,row,setz\n1,0,0,0,3,1,tip\n", "column 'setz' is not one of node, x"),
+    ("node,x,y,z,direction,row,X\n1,0,0,0,3,1,0\n", "column 'x' .* is given twice"),
     (f"node,x,y,z,direction,row\n{2**53 + 2},0,0,0,3,1\n", "is not a whole number"),
     ("", "not a CSV table"),
 ]
@@ -60,7 +60,7 @@ def test_a_wrong_node_table_is_refused(tmp_path: Path, text: str, message: str) 
 
 
 PLACES = [
-    ("node,x,y,z,sts\n1,0,0,0,tip\n", "column 'sts' is none of"),
+    ("node,x,y,z,sts\n1,0,0,0,tip\n", "column 'sts' is not one of"),
     (f"node,x,y,z\n{2**53 + 2},0,0,0\n", "not a number"),
     ("node,x,y,z\n1.5,0,0,0\n", "not a number"),
 ]
@@ -122,7 +122,7 @@ WRONG_DECKS = [
     (DECK + "nobody, 1\n", "no \\*NSET nobody"),
     (DECK.replace("1, 0.0, 0.0, 0.0", "1, here"), "is not a node line"),
     (DECK.replace("*INCLUDE, INPUT=more.inp", "*INCLUDE, INPUT=less.inp"), "cannot be read"),
-    (DECK.replace(" 2, 1.0D-1, 0.0\n", ""), "node 2 stands in no"),
+    (DECK.replace(" 2, 1.0D-1, 0.0\n", ""), "node 2 is in no"),
 ]
 
 
@@ -161,7 +161,7 @@ SLIPS = [
     (NODES + "*BOUNDARY\n1,-2000000000,3\n", "first and last direction, 1 to 6"),
     (NODES + "*BOUNDARY\n1, 3, 1\n", "none is in it"),
     (NODES + "*BOUNDARY\n1, \u00b2, 3\n", "first and last direction, 1 to 6"),
-    (NODES + "*BOUNDARY\n7, 1, 3\n", "node 7 stands in no"),
+    (NODES + "*BOUNDARY\n7, 1, 3\n", "node 7 is in no"),
     (NODES + "*NSET, NSET=A, GENERATE\n1, 3, 0\n", "no node is in it"),
     (NODES + "*NSET, NSET=A, GEMERATE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*BOUNDRY\n1, 1, 3\n", "is \\*BOUNDARY meant"),

@@ -130,7 +130,7 @@ BROKEN = [
     ("k.mat", matlab(K=np.eye(3))[:-20], "is damaged"),
     ("k.mat", b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512), "version 7.3"),
     ("k.mat", matlab(K=np.eye(3), M=np.eye(3)), "holds 2 matrices"),
-    ("k.mat", standing_twice(), "an entry that stands twice"),
+    ("k.mat", standing_twice(), "an entry that is given twice"),
     ("k.mat", matlab(order=3), "holds 0 matrices"),
     ("k.mat", matlab(K=np.eye(3) * 1j), "complex"),
     ("k.mat", matlab(K=np.zeros((2000, 2000))), "unpack to more than"),
@@ -367,5 +367,5 @@ def test_exponents_of_fortran_in_a_market_file(tmp_path: Path) -> None:
 
 def test_a_row_that_stands_twice_in_an_export(tmp_path: Path) -> None:
     (tmp_path / "k.sti").write_text("1 1 2.0\n1 2 -1.0\n2 2 2.0\n1 2 -1.0\n")
-    with pytest.raises(StudyError, match="1 entries stand twice"):
+    with pytest.raises(StudyError, match="1 entries are given twice"):
         read_matrix(tmp_path / "k.sti")

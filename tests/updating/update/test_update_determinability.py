@@ -100,7 +100,7 @@ def test_a_value_at_its_bound_is_flagged() -> None:
         ({"parameters": ["E"], "weights": [1.0, -2.0, 1.0]}, "none negative"),
         ({"parameters": ["nose.E"]}, "'nose.E'"),
         ({"parameters": []}, "no parameters"),
-        ({"parameters": ["E", "E"]}, "stands twice"),
+        ({"parameters": ["E", "E"]}, "is given twice"),
         ({"parameters": ["E"], "data": ["shapes"]}, "no frequencies"),
         ({"parameters": ["E"], "data": ["frequencies", "sound"]}, "sound"),
         ({"parameters": ["E"], "data": ["frequencies", "shapes"]}, "no shapes were measured"),

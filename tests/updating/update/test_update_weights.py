@@ -101,7 +101,7 @@ def test_a_parameter_that_runs_to_the_end_of_its_range_says_so() -> None:
         ({"parameters": ["Young"]}, "no parameter 'Young'"),
         ({"parameters": ["zone1.colour"]}, "no 'colour'"),
         ({"parameters": ["length.depth"]}, "no parameter 'depth'"),
-        ({"parameters": ["E", "E"]}, "stands twice"),
+        ({"parameters": ["E", "E"]}, "is given twice"),
         ({"parameters": []}, "no parameters"),
         ({"parameters": ["sensor_mass"]}, "do not state where"),
         ({"parameters": ["local_stiffness.x"]}, "also needs extent, loss"),

@@ -76,7 +76,7 @@ class Deck:
         """Yield the nodes among them; as many steps as there are nodes or numbers, whichever are fewer."""
         for numbers in self.ranges(name, where):
             if len(numbers) == 1 and numbers[0] not in self.nodes:
-                raise StudyError(f"{where}: node {numbers[0]} stands in no *NODE card before")
+                raise StudyError(f"{where}: node {numbers[0]} is in no *NODE card before")
             few, many = (
                 (numbers, self.nodes) if len(numbers) < len(self.nodes) else (self.nodes.keys(), numbers)
             )

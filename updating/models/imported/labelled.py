@@ -121,13 +121,13 @@ def _of_abaqus(path: Path) -> Labelled:
 
 
 def _once(found: Labelled) -> Labelled:
-    """Refuse a matrix in which an entry stands twice."""
+    """Refuse a matrix in which an entry is given twice."""
     places, counts = np.unique(np.hstack([found.row, found.column]), axis=0, return_counts=True)
     if len(places) < len(found.value):
         node, direction, other, way = places[np.argmax(counts)].tolist()
         raise StudyError(
-            f"{found.source}: the entry of {node}.{direction} and {other}.{way} (node.direction) stands twice; write "
-            "the file anew"
+            f"{found.source}: the entry of {node}.{direction} and {other}.{way} (node.direction) is given "
+            "twice; write the file anew"
         )
     return found
 

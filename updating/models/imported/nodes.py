@@ -236,7 +236,8 @@ def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFr
         if twice or (c not in known and not table[c].isna().to_numpy().all())
     ]:
         raise StudyError(
-            f"{path}: column {strange[0]!r} is none of {', '.join(known)}, or stands twice; rename it or take it out"
+            f"{path}: column {strange[0]!r} is not one of {', '.join(known)}, or is given twice; rename it "
+            "or take it out"
         )
     try:
         names = (
@@ -290,7 +291,7 @@ def deck_table(deck: Deck, node: IntArray, direction: IntArray, source: str) -> 
     unknown = sorted({n for n in node.tolist() if n not in deck.nodes and n <= last})
     if unknown:
         raise StudyError(
-            f"{source}: node {unknown[0]} stands in no *NODE card, but has a row; give the deck that was run"
+            f"{source}: node {unknown[0]} is in no *NODE card, but has a row; give the deck that was run"
         )
     rows = [
         (n, d, row)

@@ -223,7 +223,7 @@ def build_parameter_set(
     Raises
     ------
     StudyError
-        If a name means nothing, stands twice, or cannot be examined on this specimen.
+        If a name means nothing, is given twice, or cannot be examined on this specimen.
     """
     model_parameters: list[ModelParameter] = []
     for name in names:
@@ -232,7 +232,7 @@ def build_parameter_set(
         raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
     seen = [model_parameter.name for model_parameter in model_parameters]
     if twice := sorted({n for n in seen if seen.count(n) > 1}):
-        raise StudyError(f"update: parameter {twice[0]!r} stands twice; name each once")
+        raise StudyError(f"update: parameter {twice[0]!r} is given twice; name each once")
     parameter_set = ParameterSet(tuple(model_parameters), fixed)
     _check_complete(parameter_set, predictor)
     return parameter_set
