@@ -101,5 +101,5 @@ def evidence(diagnosis: Diagnosis) -> str:
     before, after, floor = map(shrink.size, (shrink.held_before, shrink.held_after, shrink.floor))
     parts.append(f"{METRICS[shrink.metric]} gap {before} → {after} on modes held out, noise floor {floor}")
     if shrink.closed is not None and shrink.closed.determined:
-        parts.append(f"closes {shrink.closed} of the reducible gap")
+        parts.append(f"reducible gap closed {shrink.closed}")
     return "  ·  ".join(parts)

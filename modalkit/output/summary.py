@@ -322,7 +322,10 @@ def _left_out(diagnosis: Diagnosis) -> str:
     lacking = [why for why in diagnosis.not_examined.values() if why.lack is Lack.DATA]
     if not lacking:
         return ""
-    return f"; {len(lacking)} effect{'s' * (len(lacking) > 1)} could not be examined for want of data (listed below)"
+    return (
+        f"; {len(lacking)} effect{'s' * (len(lacking) > 1)} could not be examined because data are "
+        "missing (listed below)"
+    )
 
 
 def _next(diagnosis: Diagnosis) -> str:
@@ -333,7 +336,7 @@ def _next(diagnosis: Diagnosis) -> str:
             "first find out why most modes have no partner in the model: points, signs, axes, units, clamps"
         )
     if diagnosis.suspected:
-        return "test again, with more hits and points and narrower tolerances, if it matters"
+        return "if it matters, test again with more hits, more points and narrower tolerances"
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
     if diagnosis.verdict == "class" and (twin := _twin(diagnosis)):
@@ -350,7 +353,10 @@ def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "named":
         return f"no rival is left to separate; to confirm: {ways}"
     if diagnosis.verdict == "unknown":
-        return "look at the modes that miss most below; more points there, and a test of the bare specimen"
+        return (
+            "examine the modes that deviate most (below); measure more points there, and test the bare "
+            "specimen"
+        )
     return ways
 
 

@@ -79,7 +79,7 @@ class Absorber(Effect):
         damped until no test finds it is a dashpot to the ground: all of them other effects, with fewer parameters.
         """
         if not predictor.measured.has_shapes:
-            return Obstacle(Lack.DATA, "it takes shapes to see which mode the model lacks")
+            return Obstacle(Lack.DATA, "shapes are needed to identify the mode that the model lacks")
         if predictor.measured.unpaired is None:
             what = "it makes a mode of its own, and every measured mode is one of the model's"
             return Obstacle(Lack.DATA, what)

@@ -121,7 +121,7 @@ class JointNonlinearity(Effect):
         test = predictor.measured
         if test.slope is not None and test.level and np.isfinite(test.slope).any():
             return None
-        what = "no points were hit several times with levels that span 2 : 1, or there are no raw hits"
+        what = "this needs raw hits with force levels that span 2 : 1 at some points"
         return Obstacle(Lack.DATA, what)
 
     def fidelity_on(self, predictor: Predictor) -> float:
