@@ -82,7 +82,7 @@ def array_of(raw: bytes) -> AnyArray:
     try:
         dtype = np.dtype(f"{order}{kind}{size}")
     except TypeError as error:
-        raise ValueError(f"an array of {kind}{size}, which is no kind of number") from error
+        raise ValueError(f"an array of {kind}{size}, which is not a kind of number") from error
     shape = tuple(int(n) for n in re.findall(r"\d+", numbers))
     if math.prod(shape) * dtype.itemsize != len(raw) - body:
         raise ValueError(f"an array of shape {shape} in {len(raw) - body} bytes")

@@ -40,7 +40,7 @@ def frozen_array(values: Any, dtype: Any = np.float64, *, keep_single: bool = Fa
     Parameters
     ----------
     values : array_like
-        Copied, unless it is an array that nobody can write to any more.
+        Copied, unless it is an array that can no longer be written to.
     dtype : dtype
         Wanted type.
     keep_single : bool
@@ -58,7 +58,7 @@ def frozen_array(values: Any, dtype: Any = np.float64, *, keep_single: bool = Fa
 
 
 def _is_frozen(values: Any) -> bool:
-    """Tell whether an array and whatever it is a view of are read-only and numpy's own."""
+    """Return whether an array and whatever it is a view of are read-only and numpy's own."""
     if type(values) is not np.ndarray:
         return False
     array: Any = values

@@ -33,7 +33,7 @@ _FACE: list[str] = []  # the module that draws, none before modalkit is imported
 class Displayed:
     """A dataclass that displays itself by what it holds, not by every number in it.
 
-    A subclass says in `_headline` what it is in one line; its ``table()``, where it has one, is shown below. What has
+    A subclass describes itself in `_headline` in one line; its ``table()``, where it has one, is shown below. What has
     no headline of its own is described field by field: arrays by their shape, tables and sequences by their length.
     """
 
@@ -180,7 +180,7 @@ def _cut(text: str, length: int) -> str:
 
 
 def _html(rows: pd.DataFrame) -> str:
-    """Return a table for a notebook; row numbers that nobody gave a name are no column of it."""
+    """Return a table for a notebook; row numbers without a name are not a column of it."""
     name = rows.index.name
     index = name is not None or rows.index.dtype.kind not in "iu"
     shown = rows.set_axis(rows.index.rename(None), axis=0)

@@ -41,7 +41,9 @@ class Dof:
         """
         found = _WRITTEN.fullmatch(text.strip().upper())
         if found is None:
-            raise InputError(f"{text!r} is no degree of freedom; write node, sign and axis, as 12+Z or 3-X")
+            raise InputError(
+                f"{text!r} is not a degree of freedom; write node, sign and axis, as 12+Z or 3-X"
+            )
         node, sign, character = found.groups()
         code = next(code for code, name in _LETTERS.items() if name == character)
         return cls(int(node), -code if sign == "-" else code)

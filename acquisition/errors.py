@@ -1,4 +1,4 @@
-"""The one small error family: every message says what was found, where, and what to do."""
+"""The one small error family: every message states what was found, where, and what to do."""
 
 
 class ModalkitError(Exception):

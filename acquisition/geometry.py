@@ -36,7 +36,7 @@ class Geometry(Displayed):
     Raises
     ------
     InputError
-        If a node number stands twice, the shapes do not agree, or a line ends at a node that does not exist.
+        If a node number is given twice, the shapes do not agree, or a line ends at a node that does not exist.
     """
 
     nodes: tuple[int, ...]
@@ -74,7 +74,7 @@ class Geometry(Displayed):
         return cls((), np.zeros((0, 3)))
 
     def __contains__(self, node: int) -> bool:
-        """Tell whether a node has coordinates."""
+        """Return whether a node has coordinates."""
         return node in self.nodes
 
     def at(self, nodes: Iterable[int]) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import Any
 from acquisition.errors import InputError
 
 # How like a known key an unknown one must be to count as misspelt, by difflib's ratio [-]: one wrong or missing
-# letter of the shortest, "node", gives 0.75. Nearer to 1 lets more of them pass for keys of somebody else's.
+# letter of the shortest, "node", gives 0.75. Nearer to 1 lets more of them pass for keys of other programs.
 _RESEMBLES = 0.75
 
 
@@ -19,13 +19,13 @@ def once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If a key stands twice, of which a parser keeps the last.
+        If a key is given twice, of which a parser keeps the last.
     """
     found = dict(pairs)
     if len(found) < len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise InputError(f"the key {twice[:40]!r} stands twice in one record; take one out")
+        raise InputError(f"the key {twice[:40]!r} is given twice in one record; take one out")
     return found
 
 

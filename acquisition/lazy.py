@@ -12,7 +12,7 @@ def load_on_demand(package: str, names: Mapping[str, str]) -> None:
     """Make the public names of a package load the module they stand in when they are asked for.
 
     A plain import of the package then costs nothing, and a command pays for what it uses. To the type checker the
-    package says the same by imports under ``TYPE_CHECKING``; a test holds both lists equal.
+    package declares the same by imports under ``TYPE_CHECKING``; a test holds both lists equal.
 
     Parameters
     ----------

@@ -86,14 +86,14 @@ def _frfs_of_mat(path: Path, layout: Layout) -> FrfSet:
 
 
 def _nothing(files: Sequence[Path], content: UffContent) -> str:
-    """Say why universal files gave neither hits nor FRFs."""
+    """State why universal files gave neither hits nor FRFs."""
     bad = [d.fault for d in content.datasets if not d.ok]
     why = bad[0] if bad else next(iter(content.warnings), "no time records with a force, and no FRFs, in it")
     return why if bad else f"{', '.join(map(str, files[:3]))}: {why}"
 
 
 def written_as_uff(path: Path | str) -> bool:
-    """Tell whether a file is a universal file: by its ending, or because it starts as one does.
+    """Return whether a file is a universal file: by its ending, or because it starts as one does.
 
     A file that cannot be opened counts as one, so that it is refused with its name.
     """

@@ -39,19 +39,20 @@ def si_value(value: Any, unit: str) -> Any:
     Raises
     ------
     ValueError
-        If the text is no quantity, or one of another kind.
+        If the text is not a quantity, or one of another kind.
     """
     if not isinstance(value, str):
         return value
     found = None if "," in value else _QUANTITY.fullmatch(value.strip())
     if found is None:
         raise ValueError(
-            f"{value!r} is no quantity; write a number with a decimal point and its unit, as {_example(unit)}"
+            f"{value!r} is not a quantity; write a number with a decimal point and its unit, as "
+            f"{_example(unit)}"
         )
     number, written = float(found[1]), found[2].strip()
     quantity = number if not written else _scaled(number, _factor(written, unit, value))
     if not math.isfinite(quantity):
-        raise ValueError(f"{value!r} is no finite number")
+        raise ValueError(f"{value!r} is not a finite number")
     return quantity
 
 
@@ -73,10 +74,10 @@ def _factor(written: str, unit: str, value: str) -> float:
         )
     one = _registry().Quantity(1, given)
     if not unit and not {str(name) for name, _ in one.unit_items()} <= SHARES:
-        raise ValueError(f"{value!r} is no plain number; write it as {_example(unit)}")
+        raise ValueError(f"{value!r} is not a plain number; write it as {_example(unit)}")
     if one.dimensionality != _registry().Quantity(1, wanted).dimensionality:
         raise ValueError(
-            f"{value!r} is no quantity in {unit or 'plain numbers'}; write it as {_example(unit)}"
+            f"{value!r} is not a quantity in {unit or 'plain numbers'}; write it as {_example(unit)}"
         )
     turns = dict(one.to_root_units().unit_items()).get("radian", 0)
     if turns not in (0, dict(_registry().Quantity(1, wanted).to_root_units().unit_items()).get("radian", 0)):
@@ -85,7 +86,7 @@ def _factor(written: str, unit: str, value: str) -> float:
 
 
 def _unit(written: str) -> Unit | None:
-    """Return a unit as pint knows it, or None."""
+    """Return a unit in pint, or None."""
     if not _UNIT.fullmatch(written):
         return None
     text = _BARE_POWER.sub(r"^\1", written.replace("·", "*").replace("μ", "µ"))

@@ -49,7 +49,7 @@ def signs(frfs: FrfSet) -> FloatArray:
 
 
 def arrange(frfs: FrfSet) -> Arrangement:
-    """Sort the FRFs into a matrix; a pair of degrees of freedom that stands twice keeps its last FRF."""
+    """Sort the FRFs into a matrix; a pair of degrees of freedom that is given twice keeps its last FRF."""
     return _arranged(frfs.responses, frfs.references)
 
 

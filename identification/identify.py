@@ -111,7 +111,7 @@ class Prepared:
     points_rejected : tuple of str
         Points whose FRFs were left out, with the reason.
     warnings : tuple of str
-        What the user ought to know of these.
+        Warnings and notes on these.
     """
 
     frfs: FrfSet
@@ -227,8 +227,8 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
     chart, start = charted(even, ESTIMATORS[method], band=limits, order=order)
     if len(start) == 0:
         raise EstimationError(
-            f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
-            "order rises; widen the band, raise the order or check the FRFs"
+            f"{frfs.source}: no pole is stable between {limits[0]:g} and {limits[1]:g} Hz as the order "
+            "rises; widen the band, raise the order or check the FRFs"
         )
     fitted = fit_shaped(data, start, band=limits, course=course)
     if fitted.frfs.line_shape is not None and data.line_shape is None:
@@ -256,7 +256,7 @@ def _selected(prepared: Prepared, fitted: Fitted, add: Sequence[float], drop: Se
     known |= nearest_modes(fitted.fit.poles, add, modes, data.df)
     struck, modes = fitted.fit.poles[modes & ~known], modes & known
     if not modes.any():
-        why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
+        why = "once the modes named are dropped" if drop else "in the band: the pole found is background"
         raise EstimationError(f"{data.source}: no mode is left {why}; widen the band")
     result = _assemble(data, fitted, errors, modes, prepared.chart, limits, prepared.points_rejected)
     statement = (
@@ -302,7 +302,7 @@ class _Errors:
         return cls(factors, separation, covariance.pole_statistics(fitted, factors, separation))
 
     def clear(self, fitted: Fitted) -> BoolArray:
-        """Tell which poles have constants that no noise makes, (n_poles,), however little is known of their damping."""
+        """Return which poles have constants that no noise makes, (n_poles,), even if their damping is uncertain."""
         size = np.abs(fitted.fit.linear.residues * 2.0 * fitted.fit.poles.imag)
         own = covariance.own_errors(fitted, self.factors, self.separation)
         return np.asarray(np.mean((size / own) ** 2, axis=0) > _CLEAR**2)
@@ -396,8 +396,8 @@ def _struck(poles: ComplexArray) -> tuple[str, ...]:
         return ()
     named = ", ".join(hertz(abs(p) / (2 * np.pi)) for p in poles)
     return (
-        f"what the fit has at {named} was taken for no mode: the data do not tell its frequency or its damping; "
-        "name it with add if it is one",
+        f"what the fit has at {named} was not accepted as a mode: the data determine neither its frequency "
+        "nor its damping; if it is a mode, name it with add",
     )
 
 
@@ -429,8 +429,9 @@ def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple
         notes.append(Consequential(poor))
     if fitted.rank_excess > 1.0:
         notes.append(
-            f"the references do not agree on the shapes: holding each mode to one shape raises the misfit to "
-            f"{fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between them, and "
-            "whether the structure is symmetric: two modes at the very same frequency look like this too"
+            "the references do not agree on the shapes: holding each mode to one shape raises the misfit "
+            f"to {fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between "
+            "them, and whether the structure is symmetric: two modes at the same frequency have the same "
+            "effect"
         )
     return tuple(notes)

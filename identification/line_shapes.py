@@ -25,7 +25,7 @@ modes count as one until the completion of the fit adds the second again; halved
 shape stay."""
 
 STRONG = 10.0
-"""By how much Schwarz's criterion must fall for a line shape that nobody stated [-]: very strong evidence (Kass and
+"""By how much Schwarz's criterion must fall for a line shape that is not stated [-]: very strong evidence (Kass and
 Raftery, J. Am. Stat. Assoc. 90 (1995) 773-795). Doubled: no change where peaks are narrow; at none, peaks far wider
 than lines get a shape by chance, and a damping that is off by more than its sigma."""
 
@@ -52,7 +52,7 @@ def fit_shaped(
 ) -> Fitted:
     """Fit candidates with the line shape that explains the FRFs best, no window included unless one is stated.
 
-    A shape that nobody states counts if the fit with it explains more than the one without, each pole, each term and
+    A shape that is not stated counts if the fit with it explains more than the one without, each pole, each term and
     each number of the law of the noise at its price (Schwarz, Ann. Stat. 6 (1978) 461-464): two poles under a
     half-power width apart imitate the line shape. The candidates, and the poles of the fit without a shape, start those
     with one, imitations made one. A shape that the lags of the FRFs contradict does not count, however badly they fit
@@ -96,7 +96,7 @@ def fit_shaped(
 
 
 def _may_have_a_shape(frfs: FrfSet, start: ComplexArray) -> bool:
-    """Tell whether FRFs may have a line shape: none is excluded, and peaks are not far wider than lines.
+    """Return whether FRFs may have a line shape: none is excluded, and peaks are not far wider than lines.
 
     Records under an exponential window, as those of hits, had no Hann window.
     """
@@ -135,7 +135,9 @@ def worth_asking(fitted: Fitted) -> list[Kind]:
         change = _without(directions, (shaped - plain) * weight) / weight
         along = float(np.sum((change.conj() * fitted.residual).real / fitted.variance))
         power = float(np.sum(squared(change) / fitted.variance)) + np.finfo(float).tiny
-        if 2.0 * along**2 / power > STRONG:  # more than noise is left: of what, no test about this fit tells
+        if (
+            2.0 * along**2 / power > STRONG
+        ):  # more than noise is left; no test of this fit identifies its source
             return list(KINDS)
         if 2.0 * (power - 2.0 * along) < COSTLY:
             kinds.append(kind)

@@ -63,7 +63,7 @@ class ModalModel(Shown, Animated):
     chart : StabilisationChart
         Where the candidates came from.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     points_rejected : tuple of str
         Points whose FRFs were left out, with the reason.
     carried : FrfSet, optional

@@ -57,7 +57,7 @@ class Origins:
 
 
 def pole_origins(model: ModalModel, *, add: Sequence[float] = (), drop: Sequence[float] = ()) -> Origins:
-    """Say of every pole of the chart what became of it, and of every mode where it comes from.
+    """State for every pole of the chart what became of it, and of every mode where it comes from.
 
     Parameters
     ----------
@@ -122,14 +122,18 @@ def _reason(
         return PoleReason("dropped", "stable, but dropped by you: it stays in the fit as background")
     if _near(model.background_poles, pole) is not None:
         text = (
-            "stable, but the data do not tell its frequency or its damping: it stays in the fit as background"
+            "stable, but the data determine neither its frequency nor its damping: it stays in the fit as "
+            "background"
         )
         return PoleReason("background", text)
     beside = _near(model.poles, pole)
     if beside is not None:
-        text = f"stable, but one with mode {beside + 1}: frequencies that differ from FRF to FRF make one mode several"
+        text = (
+            f"stable, but the same mode as {beside + 1}: frequencies that differ between FRFs split one "
+            "mode into several"
+        )
         return PoleReason("pruned", text)
-    return PoleReason("pruned", "stable, but the fit does without it: it explains no more than noise does")
+    return PoleReason("pruned", "stable, but not needed: it explains no more than noise")
 
 
 def _near(poles: ComplexArray, pole: complex) -> int | None:

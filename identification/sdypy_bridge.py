@@ -1,4 +1,4 @@
-"""The one place that knows sdypy-EMA: models to it and from it, and its poles as a second opinion."""
+"""The one interface to sdypy-EMA: models to it and from it, and its poles for comparison."""
 
 from __future__ import annotations
 
@@ -211,10 +211,10 @@ def beside(modal: ModalData, opinion: pd.DataFrame) -> pd.DataFrame:
 
 
 def opinion_warnings(frfs: FrfSet, band: tuple[float, float]) -> tuple[str, ...]:
-    """Say what is known to make sdypy-EMA's LSCF unreliable on a band.
+    """State what is known to make sdypy-EMA's LSCF unreliable on a band.
 
     Measured on structures with known modes: it loses modes if its lower limit lies above a fifth of the upper
-    one, or at 0 Hz, and it knows nothing of a window's decay but what is taken off afterwards.
+    one, or at 0 Hz, and a window's decay is removed only afterwards.
 
     Parameters
     ----------

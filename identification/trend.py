@@ -1,8 +1,9 @@
 """How frequencies change from the first point of a roving test to the last: the trend of what each point shows alone.
 
 While hammer or sensor go from point to point it gets warmer, cords creep, a clamp settles: the frequencies of the FRFs
-follow their place in measuring order. Common poles are those in the middle of the test. What each set of FRFs that were
-measured together says of each frequency (:class:`identification.fit.drift.Drift`) is fitted by a line over that order.
+follow their place in measuring order. Common poles are those in the middle of the test. What each set of FRFs that
+were measured together gives for each frequency (:class:`identification.fit.drift.Drift`) is fitted by a line over that
+order.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ def leave_current_folder() -> None:
 
 
 def started_as_module(package: str) -> bool:
-    """Tell whether this process is ``python -m package``, and the package is only just being imported for it."""
+    """Return whether this process is ``python -m package``, and the package is only just being imported for it."""
     words = sys.orig_argv
     return sys.argv[:1] == ["-m"] and any(
         words[i - 1] == "-m" and (words[i] == package or words[i].startswith(package + "."))
@@ -49,7 +49,7 @@ def _without_current_folder(path: list[str]) -> list[str]:
 
 
 def _is_current(folder: str) -> bool:
-    """Tell whether an entry of the module path is the current folder; an empty one is."""
+    """Return whether an entry of the module path is the current folder; an empty one is."""
     try:
         return not folder or os.path.samefile(folder, os.curdir)  # noqa: PTH121
     except OSError:
@@ -66,5 +66,5 @@ def _asked_for() -> list[str]:
 
 
 def _is_installed() -> bool:
-    """Tell whether modalkit stands where the interpreter finds it anyway."""
+    """Return whether modalkit stands where the interpreter finds it anyway."""
     return os.path.basename(HOME) in ("site-packages", "dist-packages")  # noqa: PTH119

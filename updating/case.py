@@ -29,7 +29,7 @@ class Case(Displayed):
     tolerances : Tolerances
         The modeller's doubts.
     environment : Environment
-        What is said of the surroundings.
+        What is stated about the surroundings.
     accepted : tuple of (name, values)
         Effects put into the model beforehand.
     since_baseline : tuple of int

@@ -1,4 +1,4 @@
-"""What a study says of the structure's surroundings."""
+"""What a study states about the structure's surroundings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Environment:
-    """Fluid and its boundaries; all None is 'nothing said'.
+    """Fluid and its boundaries; all None is 'nothing stated'.
 
     Parameters
     ----------

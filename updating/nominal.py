@@ -1,4 +1,4 @@
-"""The nominal model of a case: what its study says, with the effects it has accepted."""
+"""The nominal model of a case: what its study states, with the effects it has accepted."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 """Numbers of the noise and of the search of a diagnosis: what each limits, where it comes from, what doubling it does.
 
 What a verdict is decided by is in :mod:`updating.diagnosis.answer.rules`; a number of one algorithm stands beside it.
-Where doubling is said, it follows from the formula that the number stands in. *Judged* means chosen by a modeller for
-structures of this kind, with no measurement behind it: these are the first to be replaced once one is there.
+Where the effect of doubling is stated, it follows from the formula that the number stands in. *Judged* means chosen by
+a modeller for structures of this kind, with no measurement behind it: these are the first to be replaced once one is
+there.
 """
 
 # --------------------------------------------------------------------------------- the noise of frequencies
@@ -52,11 +53,11 @@ makes such a mode is more probable by a factor of 16."""
 
 UNPAIRED_NEIGHBOURS = 3
 """So many of the model's modes, those next to it in frequency, mix in the shape of a measured mode that the model lacks
-[-]: the one that it is a twin of, and one to either side. Doubled: fewer shapes speak for what makes such a mode."""
+[-]: the one that it is a twin of, and one to either side. Doubled: fewer shapes support what makes such a mode."""
 
 UNPAIRED_SHAPE_NOISE = 0.05
 """Error of the shape of a measured mode that the model lacks beyond its noise, relative to its r.m.s. [-]: points are
-hit beside their places, and whatever makes it is more complicated. Doubled: its shape speaks a quarter as loudly."""
+hit beside their places, and whatever makes it is more complicated. Doubled: its shape has a quarter of the weight."""
 
 MOST_TOGETHER = 6
 """Nuisances of one group: a hit and a sensor in three directions each. Twice as many cost more small matrices and are
@@ -107,7 +108,7 @@ END_REACH = 0.01
 on usual grids, whose points are further apart."""
 
 REGISTRATION_SHARE = 0.5
-"""Share of the doubt in the length by which all points may be shifted together where no single clamp says from which
+"""Share of the doubt in the length by which all points may be shifted together where no single clamp states from which
 end they were measured [-]. From one end it would be nought, from the other the whole; half is from the middle."""
 
 # ------------------------------------------------------------------------------------------ the noise of phases
@@ -117,11 +118,13 @@ PHASE_DOUBT = 0.03
 filters, matched to a degree or two. Doubled: a delay must be twice as long to be seen."""
 
 PHASE_UNEVENNESS = 0.3
-"""How much of that differs from chain to chain [-]. Judged. Doubled: several chains say little more than one."""
+"""How much of that differs from chain to chain [-]. Judged. Doubled: several chains give little more information than
+one.
+"""
 
 COMPLEXITY_PER_DAMPING = 2.5
 """Imaginary part of a mode over its damping ratio times its size, where damping is not proportional [-]. Judged; it
-grows with how close modes are. Doubled: heavily damped modes say a quarter as much of a delay."""
+grows with how close modes are. Doubled: heavily damped modes determine a delay a quarter as well."""
 
 LARGEST_NODE_RATIO = 30.0
 """No sensor is taken to sit nearer to a node than where a mode moves this much less than elsewhere [-]: rounding of
@@ -160,7 +163,7 @@ DOUBTED_FIT = 0.02
 """For the search, and the default of the rule ``doubted_fit`` [-]."""
 
 WELL_FITTED = 0.1
-"""Where no single effect fits better than this the most promising pairs are weighed beside them, whatever they promise
+"""Where no single effect fits better than this the most promising pairs are compared with them, whatever they promise
 [-]: a linear step from a single that explains most, but not all, errs by more than the evidence differs. Doubled:
 one test in five that needs no pair takes the longer search, some 5 s on a beam."""
 
@@ -169,7 +172,7 @@ ODD_DATA_BELOW = 0.2
 repeat have to be twice as noisy, as one mode that is no mode makes all of them. Doubled: twice the time it takes."""
 
 PROBABLE_BEHIND = 6.0
-"""Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:
+"""Explanations whose logarithm of the probability lies further behind the best do not count in whether one fits [-]:
 they hold less than 0.3 % of its probability."""
 
 COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04, 0.01)
@@ -185,7 +188,7 @@ OUTLIER_SCALES = (3.0, 10.0, 30.0, 100.0)
 that belongs to another body. Doubled: an oddity of 4 sigma stays an argument."""
 
 MOST_OUTLIERS = 3
-"""So many groups at most are taken to be odd at once: with more of them a test says nothing."""
+"""So many groups at most are taken to be odd at once: with more of them a test is not informative."""
 
 MOST_ALONE = 1
 """So many where there is no cause beside them, shapes only: one odd shape is a slip, two or a frequency are a gap."""
@@ -197,15 +200,15 @@ QUANTILE_SPREAD = 0.3
 """Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
 
 SET_MARGIN = 2.0
-"""A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
-or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
+"""A set is compared where a score test estimates that its logarithm of the probability comes this near to the best,
+or above [-]: the test errs by one or two. Doubled: some three times as many sets are compared where one cause fits."""
 
 LEAST_PLACE = 0.05
 """For the search, and the default of the rule ``least_place`` [-]."""
 
 FORM_SHARE = 0.02
-"""Forms of an effect with less than this share of the most probable one do not speak for its fit [-]: they are
-another point, or another sign, that nobody would name."""
+"""Forms of an effect with less than this share of the most probable one are no evidence for its fit [-]: they are
+another point, or another sign, that would not be named."""
 
 HELD_NEAR_END = 0.25
 """A parameter is held at the end of its prior range where it is within this share of it [-]..."""
@@ -214,7 +217,7 @@ HELD_SHARE = 0.95
 """...with so much of its posterior [-]: then the data ask for a size beyond what is plausible."""
 
 NEGLIGIBLE_PROBABILITY = 1e-4
-"""Explanations less probable are not asked where their parameters lie, get rougher intervals, and have no say in the
+"""Explanations less probable are not asked where their parameters lie, get rougher intervals, and do not count in the
 regions [-]. The contract lets their rows be left out. Doubled: nothing that is printed with two digits."""
 
 # --------------------------------------------------------------------------------- how the search is carried out
@@ -224,21 +227,21 @@ DOUBT_BEYOND_NOISE = 3.0
 are sought beside it though it fits: nine tenths of the variance are its own. Doubled: six sigma may hide in it."""
 
 WITHIN_REACH = 7.0
-"""Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's
+"""Drafts whose logarithm of the probability lies further behind the best are not evaluated more closely [-]: a draft's
 evidence errs by one or two. Doubled: twice the predictions for the same answer."""
 
 FINISHING_ROUNDS = 3
 """How often what is within reach is sought: finishing one moves the bar for the others."""
 
 PAIRS_WEIGHED = 10
-"""How many pairs are weighed, those that a score test finds the most promising. Doubled: twice the time of pairs."""
+"""How many pairs are compared, those that a score test finds the most promising. Doubled: twice the time of pairs."""
 
 PAIRS_ANEW = 3
-"""How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take 1.5 times as long."""
+"""How many of these, the best, are evaluated from all starts of either effect. Doubled: pairs take 1.5 times longer."""
 
 FORMS_TRIED = 6
-"""Of how many forms of a pair of effects on imported matrices, the best by either score test, a short climb chooses
-[-]: the true one was among the first three where two regions of six were changed. Doubled: 1.5 times as long."""
+"""Of how many forms of a pair of effects on imported matrices, the best by either score test, a short maximisation
+chooses [-]: the true one was among the first three where two regions of six were changed. Doubled: 1.5 times longer."""
 
 SHIFT_SPREAD = 3.0
 """How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
@@ -284,17 +287,17 @@ RIDGE_STEPS = 4
 """How many places are taken either way: with the step, four fifths of the range. Doubled: twice the evaluations."""
 
 STARTS_TRIED = 12
-"""From how many of the starting places at most a climb is tried..."""
+"""From how many of the starting places at most a maximisation is started..."""
 
 STEPS_TRIED = 4
 """...for how many steps, before the best of them go on..."""
 
 CLIMBS = 3
-"""...and how many of these climbs go on to the top. Doubled: maxima are missed less often, at twice the time."""
+"""...and how many of these maximisations are completed. Doubled: maxima are missed less often, at twice the time."""
 
 LEAST_ON_LINE = 0.05
 """Least share of each parameter in the direction of a line of starting places, for the search to begin at that line's
-maxima alone [-]: with less the line says nothing of the parameter. Doubled: fewer rows of starts count as a line."""
+maxima alone [-]: with less the line does not determine the parameter. Doubled: fewer rows of starts count as a line."""
 
 PRIOR_SHARE = 0.25
 """Share of the samples drawn from the prior itself [-]: no weight is more than four times the likelihood. Doubled: a
@@ -324,26 +327,26 @@ SHORTEST_STEP = 1e-6
 
 NOISE_SHARE = 3.0
 """By how much the log-likelihood may change over a standard deviation by the noise's own change, before the step is
-held to be too long [-]. Doubled: modes that turn into each other are climbed along less well."""
+held to be too long [-]. Doubled: modes that turn into each other are followed less well."""
 
 UNDERSTEPPED = 1.3
 """A step that gains so many times what the parabola promised was too short [-]: far from the data the likelihood's
-tails are heavier than its curvature says."""
+tails are heavier than its curvature implies."""
 
 FRESH_PARAMETERS = 2
 """With so few parameters sensitivities are taken anew after every step: they cost no more than the step."""
 
 PATIENT_STEPS = 6
-"""After so many steps a climb is asked whether it still gets anywhere:"""
+"""After so many steps a maximisation is checked for progress:"""
 
 LITTLE_GAIN = 0.002
-"""...a gain below this share of what is missing to the best found elsewhere ends a climb [-]: it takes hundreds."""
+"""...a gain below this share of the distance to the best found ends a maximisation [-]: it needs hundreds."""
 
 HOPELESS_BEHIND = 40.0
 """How far below the best found elsewhere, in log-likelihood, a maximum need not be known any better [-]."""
 
 AT_REST = 0.01
-"""A climb is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the error of evidence."""
+"""A maximisation is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the evidence error."""
 
 RELINEARISATIONS = 3
 """How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
@@ -352,7 +355,7 @@ STRAINED_LINEARISATION = 0.01
 """Relative change of a tolerance's property that a linearisation bears [-]: its square is below the noise."""
 
 FARTHEST_TOLERANCE = 6.0
-"""Tolerances are followed so far from nominal [standard deviations]: nobody believes in more."""
+"""Tolerances are followed so far from nominal [standard deviations]: more is not plausible."""
 
 LARGEST_SENSITIVITY = 1e6
 """A state whose nuisances move the data by more, per standard deviation, is none [-]: an eigenvalue near zero."""

@@ -33,7 +33,7 @@ class Style:
         return float(field.replace(self.decimal, ".")) if self.decimal != "." else float(field)
 
     def is_number(self, field: str) -> bool:
-        """Tell whether a field holds a number."""
+        """Return whether a field holds a number."""
         try:
             self.number(field)
         except ValueError:
@@ -92,7 +92,7 @@ class Block(Channels):
         Raises
         ------
         InputError
-            If a line is short, a field is no number, or a number is not finite.
+            If a line is short, a field is not a number, or a number is not finite.
         """
         between = self.style.separator or " "
         rows = self.lines[: self.count_of(index)]
@@ -122,8 +122,8 @@ class Block(Channels):
             fields = self.style.split(line)
             if len(fields) <= max(index) or (self.strict and len(fields) != width):
                 return InputError(
-                    f"{self.path}, line {number}: {len(fields)} columns where the block began with {width}; "
-                    "mend the line, or set separator and decimal in the layout"
+                    f"{self.path}, line {number}: {len(fields)} columns, but the block began with {width}; "
+                    "correct the line, or set separator and decimal in the layout"
                 )
             for i in index:
                 try:
@@ -132,8 +132,8 @@ class Block(Channels):
                     value = np.nan
                 if not np.isfinite(value):
                     return InputError(
-                        f"{self.path}, line {number}, column {i}: {fields[i]!r} is no number; mend or remove "
-                        "the line, or set separator and decimal in the layout"
+                        f"{self.path}, line {number}, column {i}: {fields[i]!r} is not a number; correct "
+                        "or remove the line, or set separator and decimal in the layout"
                     )
         return InputError(
             f"{self.path}, line {self.first}: the numbers cannot be read; check separator and decimal"
@@ -166,7 +166,7 @@ def read_text(path: Path) -> list[str]:
     raw = raw.rstrip(b"\x1a")
     if len(raw.translate(None, _CONTROL)) < len(raw):
         raise InputError(
-            f"{path}: damaged, or binary, no column text; export it as text, or write a reader "
+            f"{path}: damaged or binary, not column text; export it as text, or write a reader "
             "(docs/howto/own_reader.md)"
         )
     try:
@@ -178,7 +178,7 @@ def read_text(path: Path) -> list[str]:
 def plain_blocks(
     path: Path, lines: Sequence[str], layout: Layout, least: int, wanted: Collection[str] = ()
 ) -> list[Block]:
-    """Return the blocks of a plain text file; blank lines part them, headings and remarks may precede each.
+    """Return the blocks of a plain text file; blank lines part them, headings and comments may precede each.
 
     Parameters
     ----------
@@ -187,11 +187,11 @@ def plain_blocks(
     lines : sequence of str
         Its lines.
     layout : Layout
-        What is said of separator, decimal and lines to skip.
+        What is stated about separator, decimal and lines to skip.
     least : int
         Columns that a line of numbers must have.
     wanted : collection of str
-        Headings that are asked for; they tell which line above the numbers is the heading.
+        Headings that are asked for; they identify the line above the numbers that is the heading.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def _without_trailer(body: Sequence[str], style: Style) -> tuple[str, ...]:
 
 
 def _is_of_words(line: str, style: Style) -> bool:
-    """Tell whether a line begins with a word and has one number at most: a row with a fault has more, or begins so."""
+    """Return whether a line begins with a word and has one number at most: a faulty row has more, or begins so."""
     fields = [entry for entry in style.split(line) if entry]
     numbers = sum(style.is_number(entry) for entry in fields)
     return _WORD.match(line) is not None and not style.is_number(fields[0]) and numbers < 2
@@ -253,8 +253,8 @@ def _check_below(below: Sequence[str], number: int, style: Style, path: Path) ->
         fields = [field for field in style.split(line) if field]
         if all(style.is_number(field) for field in fields):
             raise InputError(
-                f"{path}, line {line_number}: {line.strip()[:60]!r} behind the last line of numbers is cut or broken; "
-                "mend or remove it"
+                f"{path}, line {line_number}: {line.strip()[:60]!r} behind the last line of numbers is cut "
+                "or broken; correct or remove it"
             )
 
 
@@ -276,8 +276,8 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
         broken = last and len(fields) == 1 and not numbers and begun and "e" in line.lower()
         if row or bare or mixed or touching or joined or broken or ending:
             raise InputError(
-                f"{path}, line {line_number}: {line.strip()[:60]!r} is nearly a line of numbers; mend it, or leave it "
-                "out with skip in the layout"
+                f"{path}, line {line_number}: {line.strip()[:60]!r} is almost a line of numbers; correct "
+                "it, or leave it out with skip in the layout"
             )
 
 
@@ -293,8 +293,8 @@ def _check_behind_heading(
     fields = style.split(above[-1])
     if any(len(field) > 1 and style.is_number(field) for field in fields) and len(fields) >= len(wanted):
         raise InputError(
-            f"{path}, line {number}: {above[-1].strip()[:60]!r} holds a number and is no row of numbers; mend or "
-            "remove it"
+            f"{path}, line {number}: {above[-1].strip()[:60]!r} contains a number but is not a row of "
+            "numbers; correct or remove it"
         )
 
 
@@ -308,7 +308,7 @@ _ENDS_LIKE = re.compile(r".*\d[eE][+-]\d+")
 
 
 def _nearly(field: str) -> bool:
-    """Tell whether a field is a number, or one but for a character that none has, which may part it from a second."""
+    """Return whether a field is a number, or one but for a character that none has, which may part it from a second."""
     return any(c.isdigit() for c in field) and sum(c not in _OF_NUMBERS for c in field) <= 1
 
 
@@ -323,7 +323,7 @@ def _names(line: str, style: Style) -> tuple[str, ...]:
 
 
 def _holds(line: str, style: Style, wanted: Collection[str]) -> bool:
-    """Tell whether a line holds every heading that is asked for."""
+    """Return whether a line holds every heading that is asked for."""
     return set(wanted) <= set(_names(line, style))
 
 

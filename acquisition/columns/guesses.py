@@ -105,7 +105,7 @@ def quantity_of(channel: Channel) -> Guess | None:
 
 
 def is_even(values: FloatArray) -> bool:
-    """Tell whether numbers rise in even steps, as times and lines do."""
+    """Return whether numbers rise in even steps, as times and lines do."""
     steps = np.diff(values)
     return len(steps) > 1 and bool(
         steps.mean() > 0 and np.ptp(steps) < EVEN * steps.mean() + 2 * _digit(values)
@@ -131,7 +131,7 @@ def lines_among(channels: Sequence[Channel]) -> Channel | None:
 
 
 def is_rate(name: str) -> bool:
-    """Tell whether an array is called as a sampling rate is."""
+    """Return whether an array is called as a sampling rate is."""
     return "".join(filter(str.isalpha, name.rpartition(".")[2].lower())) in _RATES
 
 

@@ -45,7 +45,7 @@ class Column:
     name : str or None
         Heading of the column; instead of ``index``.
     unit : str
-        Unit of the numbers; "" for SI, or for what a LabVIEW header says.
+        Unit of the numbers; "" for SI, or for what a LabVIEW header states.
     scale : float or None
         Factor by which the numbers are multiplied first [-]; None is 1, where the file states units.
     part : str
@@ -157,7 +157,7 @@ def dof_of(node: int, direction: str) -> Dof:
     text = direction.strip().lower()
     code = DIRECTIONS.get(text.lstrip("+-"))
     if code is None or len(text) - len(text.lstrip("+-")) > 1:
-        raise InputError(f"direction {direction!r} is none; write +x, -x, +y, -y, +z, -z or +rx ... -rz")
+        raise InputError(f"direction {direction!r} is invalid; write +x, -x, +y, -y, +z, -z or +rx ... -rz")
     return Dof(int(node), -code if text.startswith("-") else code)
 
 
@@ -226,7 +226,7 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
 
 
 def _is_name(value: Any) -> bool:
-    """Tell whether a text names an array: it does not begin as a quantity does."""
+    """Return whether a text names an array: it does not begin as a quantity does."""
     return isinstance(value, str) and value[:1] not in tuple("+-.0123456789 ")
 
 
@@ -259,7 +259,7 @@ def _in_si(value: Any, unit: str, where: str) -> Any:
     Raises
     ------
     InputError
-        If a text is no quantity of that kind.
+        If a text is not a quantity of that kind.
     """
     try:
         return si_value(value, unit)
@@ -281,7 +281,7 @@ def _check_column(column: Column, where: str) -> None:
 
 
 def _check_rule(rule: FileRule, columns: tuple[Column, ...], where: str) -> None:
-    """See that a rule speaks of a column there is, and of a direction."""
+    """Check that a rule names an existing column, and a direction."""
     known = [c.index if c.name is None else c.name for c in columns]
     if rule.column != "" and rule.column not in known:
         raise InputError(

@@ -20,7 +20,7 @@ _NO_CHANNEL = ("X_Value", "Comment", "")
 
 
 def is_lvm(lines: Sequence[str]) -> bool:
-    """Tell whether the lines are those of a LabVIEW measurement file."""
+    """Return whether the lines are those of a LabVIEW measurement file."""
     return bool(lines) and lines[0].startswith("LabVIEW Measurement")
 
 
@@ -72,7 +72,7 @@ def _segments(path: Path, lines: Sequence[str], ends: Sequence[int], starts: Seq
 
 
 def _blank(line: str) -> bool:
-    """Tell whether a line holds separators at most."""
+    """Return whether a line holds separators at most."""
     return not line.strip(" \t;,\r")
 
 
@@ -128,7 +128,7 @@ def _block(path: Path, lines: Sequence[str], span: tuple[int, int], body: list[s
     names = tuple(style.split(lines[end + 1])) if end + 1 < len(lines) else ()
     if not (count := header.get("Channels", ["0"])[0]).isdecimal():
         raise InputError(
-            f"{path}, line {begin + 1}: {count[:40]!r} is no number of channels; export it again"
+            f"{path}, line {begin + 1}: {count[:40]!r} is not a number of channels; export it again"
         )
     channels = [i for i, name in enumerate(names) if name not in _NO_CHANNEL]
     units = dict(zip(channels, _each(header, "Y_Unit_Label", len(channels)), strict=False))

@@ -64,7 +64,7 @@ def mat_layout(table: Any, source: str) -> MatLayout:
         If a key is unknown, has a value of the wrong kind, or the keys do not go together.
     """
     if not isinstance(table, Mapping):
-        raise InputError(f'{source}: mat is no table; write [mat] with lines such as frequency = "f"')
+        raise InputError(f'{source}: mat is not a table; write [mat] with lines such as frequency = "f"')
     known = MatLayout.__dataclass_fields__
     values: dict[str, Any] = {}
     for key, value in table.items():
@@ -96,7 +96,7 @@ def _value(value: Any, default: Any, where: str) -> Any:
     """Return the value of a key, of the kind its default has: a list of texts, a text, or true or false."""
     if isinstance(default, tuple):
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
-            raise InputError(f"{where} = {value!r} is no list of texts")
+            raise InputError(f"{where} = {value!r} is not a list of texts")
         return tuple(value)
     kind = bool if isinstance(default, bool) else str
     if not isinstance(value, kind):

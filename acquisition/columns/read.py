@@ -64,7 +64,7 @@ def read_columns(
     Raises
     ------
     InputError
-        If a file, line or column cannot be used; the message says which and what to do.
+        If a file, line or column cannot be used; the message states which and what to do.
     """
     plan = layout if isinstance(layout, Layout) else read_layout(layout)
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
@@ -270,10 +270,10 @@ def _points(records: Sequence[_Record], layout: Layout) -> tuple[Hits, ...]:
 
 
 def _check_once(records: Sequence[_Record]) -> None:
-    """Check that no record of a point stands twice: noise makes any two hits differ.
+    """Check that no record of a point is given twice: noise makes any two hits differ.
 
-    Equal hits of a simulation without noise are refused, too: no rule tells them from copies on a quiet recorder of few
-    bits, and one of them says all that they say.
+    Equal hits of a simulation without noise are refused, too: no rule distinguishes them from copies on a quiet
+    recorder of few bits, and one of them holds the information of all.
     """
     seen: dict[bytes, _Record] = {}
     for record in records:
@@ -286,6 +286,6 @@ def _check_once(records: Sequence[_Record]) -> None:
                 else f"give the command without {record.path} (in a study: take it out of files)"
             )
             raise InputError(
-                f"{record.where}: the same numbers, sample by sample, as {first.where}; one hit counted twice makes "
-                f"noise look smaller: {remedy}. Of equal hits of a simulation, one says all"
+                f"{record.where}: the same numbers, sample by sample, as {first.where}; one hit counted "
+                f"twice makes the noise look smaller: {remedy}. Of identical simulated hits, keep one"
             )

@@ -26,7 +26,7 @@ class FileRule:
     Parameters
     ----------
     match : str
-        Pattern of file names, as ``point_07_*.csv``; ``{node}`` and ``{direction}`` stand for what the name says,
+        Pattern of file names, as ``point_07_*.csv``; ``{node}`` and ``{direction}`` stand for what the name states,
         ``P{node}_*.csv``.
     node : int or None
         Node in these files; None for that in the name, or that of the column.
@@ -76,7 +76,7 @@ def _pattern(match: str) -> re.Pattern[str]:
 
 
 def check_rule(rule: FileRule, where: str) -> None:
-    """See that a rule says something, each thing once.
+    """Check that a rule states something, each thing once.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def check_rule(rule: FileRule, where: str) -> None:
         count = rule.match.count(word)
         if count > 1 or (count and given):
             raise InputError(
-                f"{where}: {word} stands once in match, and not beside a key of that name; mend the rule"
+                f"{where}: {word} stands once in match, and not beside a key of that name; correct the rule"
             )
     placed = rule.named or rule.node is not None or rule.direction or DIRECTION in rule.match
     if not (placed or rule.unit or rule.scale is not None):
         raise InputError(
-            f"{where}: says nothing of these files; add node = ..., unit or scale, or write {{node}} into match, "
+            f"{where}: states nothing about these files; add node = ..., unit or scale, or write {{node}} into match, "
             'as "P{node}_*.csv"'
         )
 
@@ -120,6 +120,6 @@ def check_rules(rules: Sequence[FileRule], files: Sequence[Path], source: str) -
             else f"{named[0]!r} takes the nodes from the names"
         )
         raise InputError(
-            f"{lost[0]}: no [[file]] rule of {source} matches it, and {what}; correct the one or the other, or where "
-            "it was hit is a guess"
+            f"{lost[0]}: no [[file]] rule of {source} matches it, and {what}; correct one of them, because "
+            "otherwise the hit point is a guess"
         )

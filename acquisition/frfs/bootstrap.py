@@ -45,7 +45,7 @@ def bootstrap_frfs(
     Yields
     ------
     FrfSet
-        Without coherence and variance; ``averages`` says how many hits were drawn.
+        Without coherence and variance; ``averages`` states how many hits were drawn.
 
     Raises
     ------

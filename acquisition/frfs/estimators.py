@@ -198,6 +198,6 @@ def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) ->
 
 
 def _most(verdicts: Sequence[HitVerdict]) -> str:
-    """Say what speaks against most hits."""
+    """Return the fault that most hits have."""
     usual = usual_fault(verdicts)
     return "" if usual is None else f" ({usual[0]} of {len(verdicts)} refused for: {usual[1]})"

@@ -173,7 +173,7 @@ class FrfSet(Displayed):
         """
         if not 0 <= low < high:
             raise InputError(
-                f"the band {low:g} to {high:g} Hz is none: give its lower limit first, not below 0"
+                f"the band {low:g} to {high:g} Hz is invalid: give the lower limit first, not below 0"
             )
         keep = (self.frequency >= low - 1e-9) & (self.frequency <= high + 1e-9)
         if keep.sum() < 2:

@@ -180,7 +180,7 @@ def variance_of_groups(contributions: Sequence[FloatArray]) -> tuple[FloatArray,
     variance : (n,) array
         Their sum of squares [any squared].
     freedom : (n,) array
-        (sum v_g)^2 / sum v_g^2 / (n_g - 1), with v_g the part of group g: few hits know the variance poorly, and
+        (sum v_g)^2 / sum v_g^2 / (n_g - 1), with v_g the part of group g: few hits determine the variance poorly, and
         an interval of 95 % takes Student's t of so many degrees of freedom (Satterthwaite, Biometrics 2, 1946);
         infinite where the variance is zero [-].
     """

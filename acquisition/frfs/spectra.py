@@ -109,7 +109,7 @@ def deviations(spectra: Spectra, frf: ComplexArray, estimator: Estimator = "H1")
         jackknife, without bias for noise equal in all hits (Wu, Annals of Statistics 14, 1986, section 5).
         For H1 this is conj(F_k) (X_k - H F_k) / (sum |F|^2 sqrt(1 - h_k)), the least-squares residuals of
         hit k in the form HC2 of MacKinnon and White, Journal of Econometrics 29 (1985). A line with
-        force in one hit at most says nothing of the scatter: the error there is taken for as large as the FRF
+        force in one hit at most gives no information on the scatter: the error there is taken for as large as the FRF
         is at the other lines.
     """
     moved = _moved(spectra, frf, estimator)

@@ -1,4 +1,4 @@
-"""What speaks against a hit: its kind, by which hits are counted, and how it shows."""
+"""Faults of a hit: their kind, by which hits are counted, and how it shows."""
 
 from __future__ import annotations
 

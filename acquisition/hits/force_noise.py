@@ -71,7 +71,7 @@ def _drifting(hits: Hits, level: FloatArray) -> Hits:
 
 
 def _around_pulse(wave: FloatArray) -> BoolArray:
-    """Tell which samples of a force belong to its pulse, to further ones, or to their ringing in a filter."""
+    """Return which samples of a force belong to its pulse, to further ones, or to their ringing in a filter."""
     size = np.abs(wave)
     if not (np.isfinite(wave).all() and wave.any()):
         return np.ones(len(wave), dtype=np.bool_)

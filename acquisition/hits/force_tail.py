@@ -26,7 +26,7 @@ LONGEST = 200
 """Samples behind a pulse after which no filter rings any more: at 0.9 a sample, 1e-9 is left [-]."""
 
 ENOUGH = 50
-"""Forces from which the poles are found: twice as many know them by a fifth better, on a few samples each [-]."""
+"""Forces from which the poles are found: twice as many determine them by a fifth better, on a few samples each [-]."""
 
 HEARS = 0.25
 """Share of the power behind the pulses that ringing leaves, at most; else it is something else [-]."""

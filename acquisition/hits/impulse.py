@@ -8,7 +8,7 @@ from acquisition.arrays import FloatArray
 from acquisition.hits.checks.pulse import pulse_width, upright
 
 _WIDTHS = 4.0
-"""Pulse widths to either side of the peak over which a pulse is looked at [-]: a pulse and most of its ringing in a
+"""Pulse widths to either side of the peak over which a pulse is examined [-]: a pulse and most of its ringing in a
 filter. Over twice as many the noise of the force moves the place three times as much."""
 
 

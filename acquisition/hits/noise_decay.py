@@ -65,7 +65,7 @@ def noise_decay(test: HammerTest, side: Side) -> NoiseDecay | None:
 
 
 def falls_faster(test: HammerTest, decay: float) -> bool:
-    """Tell whether behind every pulse the noise is gone sooner than with a window: the force has one of its own.
+    """Return whether behind every pulse the noise is gone sooner than with a window: the force has one of its own.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def falls_faster(test: HammerTest, decay: float) -> bool:
 
 
 def _falls_faster(force: FloatArray, fade: float) -> bool:
-    """Tell it of one force; steps of the converter are no noise, and their lack is no window."""
+    """Return it for one force; steps of the converter are no noise, and their lack is no window."""
     first, last = pulse_ends(np.abs(force - np.median(force)))
     width = last - first + 1
     before, start = force[: max(first - BEFORE * width, 0)], last + AFTER * width

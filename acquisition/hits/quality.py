@@ -50,7 +50,7 @@ def judge_hits(test: HammerTest) -> tuple[HitVerdict, ...]:
     dead channel, a force that is too weak or far stronger than usual, a pulse of odd length, or a response that the
     other hits at the point do not explain. That the response has not decayed at the end of the record, that a
     record has an offset, that one response of several is dead, or that the only two hits at a point disagree, is
-    said but refuses nothing.
+    reported but does not reject the hit.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
 def _without_window(hits: Hits, decay: float, rate: float) -> Hits:
     """Return the records as they were before a window of that decay [1/s], in forces as far as their pulses reach.
 
-    They keep their offsets: those that end at a limit are told by it.
+    They keep their offsets: those that end at a limit are detected by it.
     """
     if not decay:
         return hits
@@ -277,7 +277,7 @@ def _odd_pair(hits: Hits, faults: list[list[Fault]], band: float) -> dict[int, t
     seen = agreement(hits, good, band)
     if seen >= AGREEING:
         return {}
-    note = f"the two hits at this point disagree: coherence {seen:.2f}; hit again to tell which is wrong"
+    note = f"the two hits at this point disagree: coherence {seen:.2f}; hit again to find which is wrong"
     return dict.fromkeys(good, (note,))
 
 

@@ -27,7 +27,7 @@ ELSE = "record one hit at a time, or cut with modalkit.split_hits(test, duration
 
 @dataclass(frozen=True)
 class _Found:
-    """Hits of one long record: where the trigger was crossed and what was heard there."""
+    """Hits of one long record: where the trigger was crossed and what was recorded there."""
 
     point: int
     record: int
@@ -35,7 +35,7 @@ class _Found:
 
 
 def holds_several_hits(test: HammerTest) -> bool:
-    """Tell whether records hold several well-separated hits each, so that `split_hits` is called for.
+    """Return whether records hold several well-separated hits each, so that `split_hits` is called for.
 
     The usual record must hold at least two hits of comparable force. A double hit does not make a record long, nor
     does the ringing of a sharp anti-alias filter, however high its lobes: a hammer only pushes, while ringing swings
@@ -146,7 +146,7 @@ def split_hits(
 
 
 def _too_short(test: HammerTest, lead: int, length: int, proposed: bool) -> str:
-    """Say why records of this length, with this lead before the trigger, cannot be cut out [samples]."""
+    """State why records of this length, with this lead before the trigger, cannot be cut out [samples]."""
     span, before = length / test.rate, lead / test.rate
     if length > test.samples:
         return (

@@ -28,7 +28,7 @@ class HitVerdict:
     used : bool
         Whether it should be used: the program's proposal, or the user's decision (see `decide`).
     reasons : tuple of str
-        Why not, and what else to know of it.
+        Why not, and other notes on it.
     peak : float
         Largest force [N].
     width : float
@@ -36,7 +36,7 @@ class HitVerdict:
     band10, band20 : float
         Frequencies at which the force spectrum is 10 and 20 dB down [Hz].
     kind : str
-        Kind of the first fault that speaks against it; empty if none does.
+        Kind of the first fault found in it; empty if none does.
     """
 
     point: Dof

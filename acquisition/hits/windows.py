@@ -15,7 +15,7 @@ from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.hits.noise_decay import noise_decay
 from acquisition.hits.window_on import windowed_records
 
-QUIET = 16  # samples before a hit that tell the offset of a response
+QUIET = 16  # samples before a hit that determine the offset of a response
 
 
 @dataclass(frozen=True)
@@ -175,11 +175,11 @@ def force_noise_decay(test: HammerTest) -> float | None:
 
 
 def unstated_window(test: HammerTest) -> float | None:
-    """Return the decay of an exponential window that nobody stated, as the force records have it [1/s].
+    """Return the decay of an exponential window that is not stated, as the force records have it [1/s].
 
     None if the test states a decay, or the noise decays no more than chance lets it seem to: the limit is
     Student's t of probability 1e-5 times the standard error, and 0.5 1/s. Where there are tops of clipped pulses that
-    fall at that rate, theirs is the more exact one; where there is no noise, they alone tell.
+    fall at that rate, theirs is the more exact one; where there is no noise, they alone determine it.
 
     Parameters
     ----------

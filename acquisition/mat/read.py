@@ -30,13 +30,13 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
     path : path
         The file, of version 5 to 7.2.
     layout : Layout or path
-        Its ``[mat]`` says which variable is what; ``[nodes]`` and ``decay`` count too, and of FRFs ``[[file]]``, which
-        places their one reference. See docs/howto/matlab.md.
+        Its ``[mat]`` states the meaning of each variable; ``[nodes]`` and ``decay`` count too, and of FRFs
+        ``[[file]]``, which places their one reference. See docs/howto/matlab.md.
 
     Raises
     ------
     InputError
-        If the file is of another version, damaged, or does not hold what the layout says.
+        If the file is of another version, damaged, or does not hold what the layout states.
     """
     plan = layout if isinstance(layout, Layout) else read_layout(layout)
     if plan.mat is None:
@@ -70,7 +70,7 @@ def _placed(plan: Layout, path: Path) -> MatLayout:
         why = (
             f"no [[file]] rule of {plan.source} matches it"
             if rule is None
-            else f"a [[file]] rule of {plan.source} gives no node; unit and scale of FRFs are said in [mat]"
+            else f"a [[file]] rule of {plan.source} gives no node; unit and scale of FRFs are stated in [mat]"
             if rule.node is None
             else f"a [[file]] rule of {plan.source} places one reference, and [mat] has {len(plan.mat.references)}"
         )
@@ -101,7 +101,7 @@ def read_mat_frfs(path: Path | str, layout: MatLayout, plan: Layout) -> FrfSet:
     if values.shape != expected or lacking:
         statement = " x ".join(f"{sizes[a]} {a}s" for a in layout.axes)
         raise InputError(
-            f"{path}: {layout.frfs!r} has shape {values.shape}, but the layout says {statement}"
+            f"{path}: {layout.frfs!r} has shape {values.shape}, but the layout states {statement}"
             + (f" and several {lacking[0]}s without an axis" if lacking else "")
             + "; correct axes, responses or references of [mat]"
         )
@@ -182,7 +182,7 @@ def _vector(values: AnyArray, name: str, path: Path | str) -> FloatArray:
     """Return a row or a column as a vector."""
     if np.iscomplexobj(values) or values.size != max(values.shape) or not values.size:
         raise InputError(
-            f"{path}: {name!r} of shape {values.shape} is no row or column of real numbers; name another"
+            f"{path}: {name!r} of shape {values.shape} is not a row or column of real numbers; name another"
         )
     if not np.isfinite(values).all():
         raise InputError(f"{path}: {name!r} has gaps; fill them or leave them out")

@@ -27,12 +27,12 @@ def checked(modal: ModalData, path: Path, *, percent: str = "the column damping_
     path : Path
         The file, for messages.
     percent : str
-        How a file of this kind says that damping is in per cent, for messages.
+        How a file of this kind states that damping is in per cent, for messages.
 
     Raises
     ------
     InputError
-        If a frequency, standard deviation, damping ratio or shape cannot be, or a mode stands twice.
+        If a frequency, standard deviation, damping ratio or shape cannot be, or a mode is given twice.
     """
     check_frequencies(modal.frequency, path)
     _sigmas(modal, path)
@@ -89,7 +89,7 @@ def _shapes(modal: ModalData, path: Path) -> None:
 
 
 def _once(modal: ModalData, path: Path) -> None:
-    """Check that no mode stands twice; without damping and shapes two of one frequency may be two."""
+    """Check that no mode is given twice; without damping and shapes two of one frequency may be two."""
     columns = [
         *([] if modal.damping is None else [modal.damping]),
         *([] if modal.shapes is None else modal.shapes),

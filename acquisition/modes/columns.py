@@ -60,16 +60,16 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
     for name in map(str, table.columns):
         first, _, copy = name.rpartition(".")
         if copy.isdigit() and first in table.columns:  # as pandas names a heading that was there before
-            raise InputError(f"{path}: column {first[:40]!r} stands there twice; leave one out")
+            raise InputError(f"{path}: column {first[:40]!r} is given twice; leave one out")
         if plain(name) in (*known, *PASSED) or part_of(name) is not None or plain(name).startswith(ASIDE):
             continue
         begins = name.strip().lower().startswith(("damping", "zeta"))
         close = difflib.get_close_matches(plain(name)[:40], known, n=1, cutoff=0.0 if begins else _RESEMBLES)
         meant = f", is {close[0]!r} meant" if close else ""
         raise InputError(
-            f"{path}: column {name[:40]!r} is none known here{meant}; known are {KNOWN}, degrees of freedom as 3+Z, "
-            f"3+Z imag, 3+Z sigma, and, not read, {', '.join(PASSED[:-1])}: correct the heading; to pass "
-            f"its column over, write {ASIDE + name[:40]!r} or delete it"
+            f"{path}: column {name[:40]!r} is unknown{meant}; known are {KNOWN}, degrees of freedom as "
+            f"3+Z, 3+Z imag, 3+Z sigma, and, not read, {', '.join(PASSED[:-1])}: correct the heading; to "
+            f"skip the column, write {ASIDE + name[:40]!r} or delete it"
         )
 
 
@@ -84,7 +84,7 @@ def column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
     Raises
     ------
     InputError
-        If two columns give it, or an entry is no number.
+        If two columns give it, or an entry is not a number.
     """
     found = [column for column in table.columns if plain(column) in HEADINGS[name]]
     if len(found) > 1:
@@ -101,7 +101,7 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
     Raises
     ------
     InputError
-        If an entry is no number.
+        If an entry is not a number.
     """
     ratios = plain(name) in {**HEADINGS["damping"], **HEADINGS["damping_sigma"]}
     entries = [entry.strip() if isinstance(entry, str) else "" for entry in column.tolist()]
@@ -118,15 +118,15 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
 
 
 def _fault(entry: str) -> str:
-    """Return what is wrong with an entry that is no number, and what to do."""
+    """Return what is wrong with an entry that is not a number, and what to do."""
     number = _NUMBER.match(entry)
     if number is not None and _UNIT.fullmatch(entry, number.end()):
         unit = entry[number.end() :].strip()
         return (
-            f"is no number but has a unit, {unit}; write {number[0]} alone, in the unit of the heading, as in "
-            "'frequency [Hz]'"
+            f"is not a number but has a unit, {unit}; write {number[0]} alone, in the unit of the heading, "
+            "as in 'frequency [Hz]'"
         )
-    return "is no number (use decimal points)"
+    return "is not a number (use decimal points)"
 
 
 def dof(name: str) -> Dof | None:

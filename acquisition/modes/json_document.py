@@ -89,7 +89,7 @@ def _document(path: Path) -> Mapping[str, Any]:
         raise InputError(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise InputError(
-            f"{path}: is no JSON ({type(error).__name__}); write it with identify --json"
+            f"{path}: is not JSON ({type(error).__name__}); write it with identify --json"
         ) from None
     schema = document.get("schema") if isinstance(document, Mapping) else None
     if schema != SCHEMA:
@@ -110,7 +110,7 @@ def _shape(mode: Mapping[str, Any], where: str) -> dict[Dof, tuple[float, float,
         node, direction = (_whole(part, key, where) for key in ("node", "direction"))
         dof, sign = Dof(node, abs(direction)), -1.0 if direction < 0 else 1.0
         if abs(direction) > 6 or dof in shape:
-            statement = "stands twice" if dof in shape else "is none"
+            statement = "is given twice" if dof in shape else "is none"
             raise InputError(
                 f"{where}: node {node}, direction {direction} {statement}; directions are -6 to 6"
             )
@@ -136,20 +136,20 @@ def _column(modes: list[Mapping[str, Any]], key: str, path: Path, *, needed: boo
 def _list(document: Mapping[str, Any], key: str, where: str) -> list[Any]:
     value = document.get(key, [])
     if not isinstance(value, list):
-        raise InputError(f"{where}: {key} is no list; write the file with identify --json")
+        raise InputError(f"{where}: {key} is not a list; write the file with identify --json")
     return value
 
 
 def _mapping(value: Any, where: str) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise InputError(f"{where}: {str(value)[:40]!r} is no record; write the file with identify --json")
+        raise InputError(f"{where}: {str(value)[:40]!r} is not a record; write the file with identify --json")
     return value
 
 
 def _whole(document: Mapping[str, Any], key: str, where: str) -> int:
     value = document.get(key)
     if type(value) is not int or abs(value) >= 2**31:
-        raise InputError(f"{where}: {key} = {str(value)[:40]} is no whole number; correct it")
+        raise InputError(f"{where}: {key} = {str(value)[:40]} is not a whole number; correct it")
     return value
 
 
@@ -163,5 +163,5 @@ def _number(document: Mapping[str, Any], key: str, where: str, *, needed: bool =
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise InputError(f"{where}: {key} = {str(value)[:40]} is no finite number; correct it")
+        raise InputError(f"{where}: {key} = {str(value)[:40]} is not a finite number; correct it")
     return number

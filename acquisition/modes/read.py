@@ -43,7 +43,7 @@ def read_modes(path: Path | str) -> ModalData:
     Raises
     ------
     InputError
-        If the file cannot be read, a column is missing, or an entry is no number.
+        If the file cannot be read, a column is missing, or an entry is not a number.
     """
     path = Path(path)
     own = installed_readers().get(path.suffix.lower())
@@ -157,13 +157,13 @@ def _table(path: Path) -> pd.DataFrame:
     except UnicodeDecodeError as error:
         statement = (
             not_utf8(path, path.read_bytes())
-            or f"{path}: binary data, no table of modes; give a .csv of text"
+            or f"{path}: binary data, not a table of modes; give a .csv of text"
         )
         raise InputError(statement) from error
     except (ValueError, pd.errors.ParserError) as error:
         statement = " ".join(str(error).split())
         raise InputError(
-            f"{path}: is no table of columns separated by {NAMES[separator]} ({statement})"
+            f"{path}: is not a table of columns separated by {NAMES[separator]} ({statement})"
         ) from None
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise InputError(f"{path}: lines have more values than the header has names; name every column")

@@ -25,7 +25,7 @@ __all__ = ["ARRAYS", "ENDINGS", "RECORDERS", "SAME_RATE", "Channels", "Recorded"
 
 
 def is_recorded(path: Path) -> bool:
-    """Tell whether a file is one of a recorder or of named arrays, by its ending."""
+    """Return whether a file is one of a recorder or of named arrays, by its ending."""
     return path.suffix.lower() in ENDINGS
 
 

@@ -1,7 +1,7 @@
 """Records from files of named arrays: HDF5, ``.npz``, MATLAB.
 
 An array of one dimension is a channel. Of one with two dimensions, the longer are the samples; the shorter are hits, or
-channels where the name says which, ``data[1]``. Complex numbers are named by their parts, ``H real`` and ``H imag``.
+channels where the name states which, ``data[1]``. Complex numbers are named by their parts, ``H real`` and ``H imag``.
 """
 
 from __future__ import annotations
@@ -123,8 +123,8 @@ def _rows(values: AnyArray, name: str, path: Path) -> AnyArray:
     flat = _part(np.atleast_1d(flat), parts.get("part"), name, path)
     if flat.ndim > 2 or (flat.ndim == 2 and flat.shape[0] == flat.shape[1]):
         raise InputError(
-            f"{path}: {name!r} has shape {values.shape}, in which hits or channels and samples cannot be told apart; "
-            "save each channel as an array of its own"
+            f"{path}: {name!r} has shape {values.shape}, in which hits or channels cannot be distinguished "
+            "from samples; save each channel as its own array"
         )
     if flat.ndim == 2 and flat.shape[0] > flat.shape[1]:
         flat = flat.T

@@ -57,7 +57,8 @@ class Recorded(Channels):
         values = self.values[index]
         if values.dtype.kind not in "fiu":
             raise InputError(
-                f"{self.where}: {self.label(index)} holds {values.dtype.name}, no real numbers; name another channel"
+                f"{self.where}: {self.label(index)} holds {values.dtype.name}, not real numbers; name "
+                "another channel"
             )
         numbers = np.asarray(values, dtype=np.float64)
         bad = np.flatnonzero(~np.isfinite(numbers))

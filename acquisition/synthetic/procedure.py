@@ -39,7 +39,7 @@ class HammerPlan:
         Time before the hit in each record [s].
     jitter : float
         Standard deviation of the start of the pulse [s]; a fraction of a sample is added in any case, as no
-        hammer knows the sampling clock.
+        hammer is synchronised with the sampling clock.
     force_noise : float
         Noise of the force channel, r.m.s. [N].
     response_noise : float

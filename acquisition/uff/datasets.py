@@ -113,7 +113,7 @@ def read_file(source: Source, finds: Finds, spool: IO[bytes], checked: Callable[
     units = _units(source, blocks, finds)
     if not any(u.known for u in units) and any(b.number in (15, 55, 58, 2411, 2414) for b in blocks):
         finds.warnings.append(
-            f"{source.name}: no data set 164; SI units are assumed where labels say nothing else"
+            f"{source.name}: no data set 164; SI units are assumed where labels do not state otherwise"
         )
     done = 0
     for block, unit in zip(blocks, units, strict=True):
@@ -131,7 +131,7 @@ def read_file(source: Source, finds: Finds, spool: IO[bytes], checked: Callable[
 
 
 def _unused(name: str, kinds: Sequence[str]) -> list[str]:
-    """Say in one line what a file holds that is not used."""
+    """State in one line what a file holds that is not used."""
     listed = "; ".join(f"{count} {kind}" for kind, count in Counter(kinds).items())
     return [f"{name}: not used: {listed}"] if listed else []
 

@@ -100,11 +100,11 @@ class _Report:
         self._say(min(_FIRST_PASS + (1 - _FIRST_PASS) * self.kept / max(self.total, 1), 0.999))
 
     def done(self) -> None:
-        """Say that all is done."""
+        """State that all is done."""
         self._say(1.0)
 
     def _say(self, fraction: float) -> None:
-        """Tell a fraction that is a thousandth more than the last one, and never less."""
+        """Report a fraction that is a thousandth more than the last one, and never less."""
         if self.report_progress is not None and (fraction >= self.reported + 1e-3 or fraction == 1):
             self.reported = fraction
             self.report_progress(fraction)
@@ -120,7 +120,7 @@ def _size(path: Path) -> int:
 def _add_file(
     path: Path, finds: Finds, stack: ExitStack, spool: tempfile.SpooledTemporaryFile[bytes], report: _Report
 ) -> None:
-    """Read one file; what is no universal file is told, and costs the others nothing."""
+    """Read one file; what is not a universal file is reported, and does not affect the others."""
     try:
         source = stack.enter_context(opened(path))
         read_file(source, finds, spool, report.checked)
@@ -173,7 +173,7 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
 
 
 def _stated(info: DatasetInfo, hit: str | None) -> str:
-    """Say what is wrong with a data set, and which hit goes with it, in one line."""
+    """State what is wrong with a data set, and which hit goes with it, in one line."""
     left_out = "it is left out" if hit is None else f"it is left out and {hit} with it"
     end = "" if info.ok else f"; {left_out}, export it again if it is needed"
     return Located(info.place, f"{info.message}{end}")

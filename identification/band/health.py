@@ -1,6 +1,6 @@
 """Whether FRFs are good enough to explain a gap by: coherence, hits refused, and what a window leaves to be known.
 
-What reciprocity and drive points show, tones, and records that end too early is said by the identification itself.
+What reciprocity and drive points show, tones, and records that end too early is reported by the identification itself.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ HALF_WIDTHS = 2.0
 
 
 def frf_health(model: ModalModel, hits: Sequence[HitVerdict] = ()) -> tuple[str, ...]:
-    """Return remarks on the FRFs that modes were identified from.
+    """Return warnings on the FRFs that modes were identified from.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def frf_health(model: ModalModel, hits: Sequence[HitVerdict] = ()) -> tuple[str,
 
 
 def mode_coherence(model: ModalModel) -> FloatArray | None:
-    """Return the coherence about each mode, FRFs weighed by how much the mode shows in them, (n_modes,) [-].
+    """Return the coherence about each mode, FRFs weighted by how much the mode shows in them, (n_modes,) [-].
 
     None where the FRFs carry no coherence.
     """
@@ -90,7 +90,7 @@ def _on_window(model: ModalModel) -> tuple[str, ...]:
     worst = int(heavy[np.argmin(own[heavy])])
     times = decay / own[worst]
     return (
-        f"the exponential window of {decay:.3g} 1/s was taken out of the damping, but is {times:.2g} times what mode "
-        f"{worst + 1} has left: an error of 1 % in it is one of {times:.2g} % in that damping; record longer with less "
-        "window",
+        f"the exponential window of {decay:.3g} 1/s was removed from the damping, but is {times:.2g} times "
+        f"what mode {worst + 1} has left: an error of 1 % in it is one of {times:.2g} % in that damping; "
+        "record longer with less window",
     )

@@ -99,7 +99,7 @@ def best_coherence(frfs: FrfSet) -> FloatArray | None:
 
 
 def _lost(frfs: FrfSet, tests: Sequence[Judged], inside: BoolArray) -> tuple[BoolArray | None, str, str]:
-    """Return the lines that carry no information, None where that cannot be told; why, and what to do."""
+    """Return the lines that carry no information, None where that cannot be determined; why, and what to do."""
     coherent, advice = best_coherence(frfs), "hit with a harder tip, sample faster"
     if tests:
         why = "the force, or the filter before the converter, leaves too little"

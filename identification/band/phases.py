@@ -1,4 +1,4 @@
-"""Lines of noise alone, told from FRFs without coherence or hits: noise rings before the force as it does after it.
+"""Lines of noise alone, detected in FRFs without coherence or hits: noise rings before the force as it does after it.
 
 The transform of a stretch of FRFs to lags has what a structure does at lag zero and behind it, also where lines are
 averaged under a window or smoothed: their line shapes are lag windows. Noise has as much at negative lags as at
@@ -15,13 +15,13 @@ from scipy.signal.windows import hann
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, squared
 
 STRETCH = 64
-"""Lines of a stretch. Doubled, the lines at which noise begins are told half as sharply [-]."""
+"""Lines of a stretch. Doubled, the lines at which noise begins are located half as sharply [-]."""
 
 STEP = 8
-"""Lines from one stretch to the next. Doubled, less work and ends that are told half as sharply [-]."""
+"""Lines from one stretch to the next. Doubled, less work and ends that are located half as sharply [-]."""
 
 NEAR = 3
-"""Lags about zero that tell nothing: what is smooth over a stretch is there, on both sides [lines of a stretch]."""
+"""Lags about zero without information: what is smooth over a stretch is there, on both sides [lines of a stretch]."""
 
 NOISE = 0.2
 """Part of the power of a stretch on that side of lag zero which has less, above which more than half is noise [-].
@@ -38,7 +38,7 @@ Doubled: modes of a tenth of a structure pass for noise."""
 
 
 def noise_lines(values: ComplexArray) -> BoolArray:
-    """Tell which lines hold noise alone, in all FRFs but less than a tenth of them, (n_lines,).
+    """Return which lines hold noise alone, in all FRFs but less than a tenth of them, (n_lines,).
 
     Parameters
     ----------

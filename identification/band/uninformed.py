@@ -10,7 +10,7 @@ from acquisition.quantities import hertz
 from identification.band.informed import LOST, PASSED, best_coherence
 
 FEWEST = 64
-"""Fewest lines by whose number a whole transform is told; doubled, that of a short record is not [-]."""
+"""Fewest lines by whose number a whole transform is recognised; doubled, that of a short record is not [-]."""
 
 
 def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
@@ -46,7 +46,7 @@ def _named(frequency: FloatArray) -> str:
 
 
 def _passed(frfs: FrfSet) -> float:
-    """Return up to where the filter passes, infinite where nobody knows the rate [Hz].
+    """Return up to where the filter passes, infinite where the rate is unknown [Hz].
 
     Lines from 0, one more than a power of two, are all that a transform gives: they end at half the rate.
     """

@@ -1,4 +1,4 @@
-"""FRFs carried over to common poles before modes are looked for: with drift, one mode looks like several."""
+"""FRFs carried over to common poles before modes are sought: with drift, one mode appears as several."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _round(
 
 
 def distinct(poles: ComplexArray) -> BoolArray:
-    """Tell which poles stand alone, shape (n_modes,): near others, a shift of one and of the other look alike."""
+    """Return which poles stand alone, shape (n_modes,): near others, a shift of one and of the other look alike."""
     alone = np.ones(len(poles), dtype=np.bool_)
     for group in clusters(poles):
         alone[group] = False

@@ -20,7 +20,7 @@ from identification.fit.equations import basis
 from identification.fit.equations.residues import fit_residues, synthesise
 
 FEWEST = 4
-"""Sets of FRFs under which no course is looked for [-]: two in each half. Doubled: small tests that drift show a row of
+"""Sets of FRFs under which no course is sought [-]: two in each half. Doubled: small tests that drift show a row of
 modes for each."""
 
 ABOUT = 0.1

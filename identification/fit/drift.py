@@ -127,7 +127,7 @@ def measuring_order(frfs: FrfSet) -> IntArray:
 def estimate_drift(
     frfs: FrfSet, fit: Fit, weights: Weights, *, own: BoolArray, previous: Drift | None = None
 ) -> Drift:
-    """Estimate the shifts from what each FRF says of the frequencies, given those it was carried over by.
+    """Estimate the shifts from the information of each FRF on the frequencies, given those it was carried over by.
 
     Parameters
     ----------
@@ -211,8 +211,8 @@ def _from_scores(
 def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
     """Return by what part of a standard deviation each FRF is believed of each mode, (n_frf, n_modes) [-].
 
-    Where a model does not hold, an FRF may seem to know a frequency far better than it does: what is left about the
-    mode in that FRF counts as its noise. A drift leaves much too, and still shows: over all lines of a peak.
+    Where a model does not hold, an FRF may seem to determine a frequency far better than it does: what is left about
+    the mode in that FRF counts as its noise. A drift leaves much too, and still shows: over all lines of a peak.
     """
     density = 1.0 / np.abs(frfs.laplace[None, :] - fit.poles[:, None]) ** 2
     left = (weights.full * squared(left_over(frfs, fit))) @ (density / density.sum(axis=1, keepdims=True)).T
@@ -222,10 +222,11 @@ def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
 def _own_shifts(
     pulls: FloatArray, information: FloatArray, within: BoolArray, reach: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return each group's own shifts and their variances, infinite where it tells nothing, (n_groups, n_modes).
+    """Return each group's own shifts and their variances, infinite where it does not determine them, (n_groups,
+    n_modes).
 
     Scores are straight in a shift within a half-width of the peak, ``reach`` [-]. A group that does not determine its
-    shift to that, at a node or in noise, tells nothing of it: there a step along the scores may be of any size.
+    shift to that, at a node or in noise, does not determine it: there a step along the scores may be of any size.
     """
     diagonal = np.einsum("gnn->gn", information)
     seen = (diagonal > 1e-12 * diagonal.max(axis=0, initial=0.0)) & (diagonal > 0) & within
@@ -274,14 +275,14 @@ def _own_variances(
 
 
 def _surely(chi: FloatArray | float, count: IntArray | int, chance: float) -> BoolArray:
-    """Tell whether squares over their variances, of ``count`` groups about their mean, are beyond chance."""
+    """Return whether squares over their variances, of ``count`` groups about their mean, are beyond chance."""
     return np.asarray(chi > stats.chi2.isf(chance, np.maximum(count - 1, 1)))
 
 
 def _of_the_mean(information: FloatArray, variance: FloatArray, common: float) -> FloatArray:
     """Return the variance of a weighted mean over the groups for unit variance, Student's width in it, (n_modes,).
 
-    The scatter between groups is known from as many of them as tell their own shift apart from noise; where all modes
+    The scatter between groups is known from as many of them as separate their own shift from noise; where all modes
     share it, together.
     """
     total = information.sum(axis=0)

@@ -37,7 +37,7 @@ _FEW = 2  # steps of a provisional fit: the first finds the frequency, the secon
 _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
-_COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
+_COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighted by noise
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
@@ -145,7 +145,7 @@ def with_named(fitted: Fitted, add: Sequence[float], *, band: tuple[float, float
     fitted : Fitted
         The fit of :func:`fit_candidates`.
     add : sequence of float
-        Frequencies at which a mode is kept whatever the data say of it [Hz].
+        Frequencies at which a mode is kept regardless of the data [Hz].
     band : tuple of float
         The band [Hz].
 

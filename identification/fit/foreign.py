@@ -211,21 +211,21 @@ def _largest(peaks: list[_Peaks]) -> IntArray:
 
 
 def _alike(one: _Peaks, other: _Peaks) -> bool:
-    """Tell whether the set with fewer clear peaks shares half of them with the other."""
+    """Return whether the set with fewer clear peaks shares half of them with the other."""
     fewer, more = (one, other) if len(one.clear.place) <= len(other.clear.place) else (other, one)
     shared = fewer.clear.shared(more)
     return 2 * int(shared.sum()) >= len(shared) > 0
 
 
 def _contradicts(own: int, peaks: list[_Peaks], main: IntArray) -> bool:
-    """Tell whether most peaks of a set lie beyond what the course and the scatter of the main group allow."""
+    """Return whether most peaks of a set lie beyond what the course and the scatter of the main group allow."""
     here = peaks[own].clear
     beside = [_beside(p, r, own, peaks, main) for p, r in zip(here.place, here.reach, strict=True)]
     return 2 * sum(beside) > len(beside)
 
 
 def _beside(place: float, reach: float, own: int, peaks: list[_Peaks], main: IntArray) -> bool:
-    """Tell whether a peak lies beyond the places at which the main group has the nearest one.
+    """Return whether a peak lies beyond the places at which the main group has the nearest one.
 
     The place is foretold by a line over measuring order; Student's t over all sets, plus the width of the peak. Where
     too few sets have the mode, it is the largest shift that is believed.

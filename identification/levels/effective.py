@@ -1,10 +1,10 @@
 """Effective levels of hits: what all modes show together of how hard each was.
 
-The largest force of a record gives how hard a structure was hit only up to the length of the pulse and to what a filter
-makes of it; some per cent remain, the same for all modes of a hit. A line fitted over such levels is too flat by the
-share of their error in their scatter (Fuller, Measurement Error Models, 1987, section 1.1), more so where the hits that
-moved most were left out. Two modes that follow the force tell the level of a hit far better than its record does, but
-for their scale, which the records have in the mean: levels are regressed on what the modes show.
+The largest force of a record gives how hard a structure was hit only up to the length of the pulse and to what a
+filter makes of it; some per cent remain, the same for all modes of a hit. A line fitted over such levels is too flat
+by the share of their error in their scatter (Fuller, Measurement Error Models, 1987, section 1.1), more so where the
+hits that moved most were left out. Two modes that follow the force determine the level of a hit far better than its
+record does, but for their scale, which the records have in the mean: levels are regressed on what the modes show.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def _shown(
     about = (shifts - _means(shifts, point, 1 / variances)) / slope
     total = weight.sum(axis=1)
     own = np.sum(weight * about, axis=1) / total
-    # modes that disagree on a hit beyond its misfit know its level the less
+    # modes that disagree on a hit beyond its misfit determine its level the less
     scale = np.sum(weight * (about - own[:, None]) ** 2, axis=1) / max(shifts.shape[1] - 1, 1)
     return own + _means(levels[:, None], point, np.ones(len(levels)))[:, 0], np.maximum(scale, 1.0) / total
 

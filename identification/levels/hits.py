@@ -1,4 +1,4 @@
-"""The levels of the hits of a test: how hard each was, and whether they tell soft from hard."""
+"""The levels of the hits of a test: how hard each was, and whether they separate soft from hard."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from acquisition.frfs.frf import FrfSet
 from acquisition.hits.hammer import Hits
 
 SPAN = 2.0
-"""Strongest over weakest hit from which levels tell anything [-]."""
+"""Strongest over weakest hit from which levels are informative [-]."""
 
 LEAST_FREEDOM = 2
 """Fewest degrees of freedom that a slope common to all points leaves."""
@@ -88,7 +88,7 @@ def _peaks(hits: Hits, numbers: IntArray) -> FloatArray:
 
 
 def why_not(entries: Sequence[UsedHits]) -> str | None:
-    """Return why the levels of hits tell no level dependence, or None if they do."""
+    """Return why the levels of hits show no level dependence, or None if they do."""
     repeated = [e for e in entries if len(e.numbers) > 1]
     spare = sum(len(e.numbers) - 1 for e in repeated) - 1
     if spare < LEAST_FREEDOM:
@@ -106,6 +106,6 @@ def why_not(entries: Sequence[UsedHits]) -> str | None:
 def mean_level(entries: Sequence[UsedHits]) -> float:
     """Return the level that averaged FRFs stand for: the mean over points of sum F^3 / sum F^2 [N].
 
-    H1 weighs hits by their power (Ewins, Modal Testing, 2000, section 3.9), so hard hits have the larger say.
+    H1 weighs hits by their power (Ewins, Modal Testing, 2000, section 3.9), so hard hits have the larger weight.
     """
     return float(np.mean([(e.levels**3).sum() / (e.levels**2).sum() for e in entries]))

@@ -44,7 +44,7 @@ PADDED = 4
 
 
 def is_smeared(model: ModalModel, found: LevelDependence) -> bool:
-    """Tell whether averages over the hits at a point are those of several structures.
+    """Return whether averages over the hits at a point are those of several structures.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def at_one_level(
     Parameters
     ----------
     model : ModalModel
-        Its modes, told apart from each other at any one level.
+        Its modes, distinguished from each other at any one level.
     tests : sequence of (HammerTest, verdicts)
         The raw hits and what was decided on them.
     found : LevelDependence
@@ -170,7 +170,7 @@ def hit_shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     """Return (ln f, zeta) of the hits less those of the model, at their levels and at the common one.
 
     What a point has of its own, a roving mass, stays. Modes that do not follow the level beyond doubt stay as well. No
-    joint follows a line for ever: a hit that shows a mode better than the line holds says itself where it is.
+    joint follows a line for ever: a hit that shows a mode better than the line holds determines its own place.
 
     Returns
     -------

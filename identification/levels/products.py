@@ -61,7 +61,7 @@ def growth(
     *,
     windows: Windows | None = None,
 ) -> Growth | None:
-    """Return how modal constants follow the level of the hits; None where the hits tell no level dependence.
+    """Return how modal constants follow the level of the hits; None where the hits show no level dependence.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ A joint that slips or closes makes a structure softer or stiffer the harder it i
 found by a few steps from those identified, its residues free, so that where exactly a hit landed does not matter.
 Their shifts are then fitted by a curve common to all points and an offset of each point in each run, which takes up
 drift from point to point and what a roving transducer does; its slope is that at the level of the averaged FRFs. Where
-modes agree on how hard a hit was better than its record tells, that level takes the place of the recorded one.
+modes agree on how hard a hit was than its record shows, that level takes the place of the recorded one.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ STEPS = 2
 
 BENT = 0.3
 """How far the slope may change over the mean level, relative to itself, 1 sigma [-]: what gives way in proportion to
-the force moves a mode the less, the softer it is already. Doubled: few levels tell a slope half as well."""
+the force moves a mode the less, the softer it is already. Doubled: few levels determine a slope half as well."""
 
 AT_REST = 0.03
 """Part of a half-width that a step may leave before the next is taken: its error goes as the square [-]."""
@@ -47,7 +47,7 @@ other test of thirty modes names one by chance [-]."""
 
 
 def why_no_level_dependence(tests: Sequence[Judged]) -> str | None:
-    """Return why these hits tell no level dependence, or None if they do; parameters as for `level_dependence`."""
+    """Return why these hits show no level dependence, or None if they do; parameters as for `level_dependence`."""
     return why_not(used_hits(tests))
 
 
@@ -58,7 +58,7 @@ def level_dependence(
     windows: Windows | None = None,
     slope: FloatArray | None = None,
 ) -> LevelDependence | None:
-    """Return how the modes depend on the level of the hits; None where the hits do not tell.
+    """Return how the modes depend on the level of the hits; None where the hits do not determine them.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def level_dependence(
     windows : Windows, optional
         As when the FRFs were estimated.
     slope : (n_modes,) array, optional
-        Slopes by which the poles of each hit are expected; left out, they are looked for about the common ones [1/N].
+        Slopes by which the poles of each hit are expected; left out, they are sought around the common ones [1/N].
 
     Returns
     -------
@@ -142,7 +142,7 @@ def band_of(model: ModalModel) -> tuple[float, float]:
 
 
 def is_known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:
-    """Tell whether any FRF of these hits is among the rows."""
+    """Return whether any FRF of these hits is among the rows."""
     return any((response, entry.hits.reference) in rows for response in entry.hits.responses)
 
 
@@ -177,7 +177,7 @@ def _of_hit(
 ) -> tuple[FloatArray, FloatArray]:
     """Return shifts of (ln f, zeta) of each mode in one hit, (n_modes, 2), and their variances.
 
-    They are looked for about the shifts of ln f (n_modes,) that are expected.
+    They are sought around the shifts of ln f (n_modes,) that are expected.
     """
     data, own, _ = of_single(frfs, weights, rows)
     poles = model.poles * np.exp(expected)

@@ -21,12 +21,12 @@ from identification.levels.slopes import band_of, is_known, rows_of
 from identification.model import ModalModel
 
 LARGEST, STEPS = 0.15, 121
-"""Largest change of frequency over the mean level that is looked for, and the number of slopes tried [-]: steps of a
+"""Largest change of frequency over the mean level that is searched, and the number of slopes tried [-]: steps of a
 quarter of a per cent move a peak by a per mille between a soft and a hard hit. Twice as many take twice the time."""
 
 WINDOW = 0.08
 """Stretch of the axis over which one slope is taken for all modes, one standard deviation of ln f [-]. Doubled, modes
-that lie 10 % apart share a slope; halved, noise between the modes has a say."""
+that lie 10 % apart share a slope; halved, noise between the modes has an influence."""
 
 POINTS = 4000
 """Number of points of the logarithmic axis [-]: some hundred for each octave of five decades."""

@@ -21,7 +21,9 @@ def columns(a: AnyArray) -> ComplexArray:
     shapes = np.asarray(a, dtype=complex)
     shapes = shapes[:, None] if shapes.ndim == 1 else shapes
     if shapes.ndim != 2:
-        raise InputError(f"an array of shape {shapes.shape} is no set of mode shapes; give (n_dofs, n_modes)")
+        raise InputError(
+            f"an array of shape {shapes.shape} is not a set of mode shapes; give (n_dofs, n_modes)"
+        )
     bad = ~np.isfinite(shapes)
     if bad.any():
         row, column = np.argwhere(bad)[0]

@@ -37,8 +37,8 @@ def frac(h1: AnyArray, h2: AnyArray) -> FloatArray:
 def fdac(h1: AnyArray, h2: AnyArray) -> FloatArray:
     """Frequency domain assurance criterion: signed cosine between the FRFs' shapes at any two frequencies.
 
-    Re(h1^H h2) / |h1| |h2| (Pascual, Golinval and Razeto, IMAC XV (1997) 587-592); the sign tells an
-    antiphase from a phase. With one FRF it is the cosine of the phase between the two and says nothing of
+    Re(h1^H h2) / |h1| |h2| (Pascual, Golinval and Razeto, IMAC XV (1997) 587-592); the sign separates an
+    antiphase from a phase. With one FRF it is the cosine of the phase between the two and contains no information on
     shapes.
 
     Parameters

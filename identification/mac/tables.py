@@ -1,4 +1,4 @@
-"""The same measures with names on them: of modes and FRFs that know their degrees of freedom."""
+"""The same measures with names on them: of modes and FRFs with their degrees of freedom."""
 
 from __future__ import annotations
 

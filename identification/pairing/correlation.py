@@ -38,7 +38,7 @@ class Correlation(Displayed):
         Close modes that span the same space in both sets but are mixed differently; their single MACs mean
         nothing.
     notes : tuple of str
-        What the reader ought to know.
+        What the reader should know.
     """
 
     test: ModalData
@@ -155,10 +155,10 @@ def _notes(groups: tuple[Subspace, ...], n_dofs: int) -> tuple[str, ...]:
     for group in groups:
         ours, theirs = (", ".join(str(i + 1) for i in side) for side in (group.test, group.model))
         stated.append(
-            f"test modes {ours} and model modes {theirs} span the same space (largest angle {group.angle:.0f} "
-            "degrees), but are mixed differently: close modes are, after the smallest change; their single MACs mean "
-            "nothing"
+            f"test modes {ours} and model modes {theirs} span the same space (largest angle "
+            f"{group.angle:.0f} degrees), but are mixed differently, as close modes are after the smallest "
+            "change; their single MACs are meaningless"
         )
     if n_dofs < 4:
-        stated.append(f"{n_dofs} degrees of freedom in common: a high MAC says little")
+        stated.append(f"{n_dofs} degrees of freedom in common: a high MAC is weak evidence")
     return tuple(stated)

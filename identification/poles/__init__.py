@@ -1,4 +1,4 @@
-"""Pole estimators, all with one signature, and the registry by whose names `identify` knows them."""
+"""Pole estimators, all with one signature, and the registry of their names in `identify`."""
 
 from identification.poles.base import Baseband, PoleEstimator, PoleSets, row_scale
 from identification.poles.lsce import lsce

@@ -14,7 +14,7 @@ _STEPS, _REST = 8, 1e-11  # Newton's steps at the most, and the length of the la
 
 
 def stable_roots(coefficients: ComplexArray) -> ComplexArray | None:
-    """Return the roots inside the unit circle, or None if they cannot be told for certain.
+    """Return the roots inside the unit circle, or None if they cannot be determined reliably.
 
     The argument of the polynomial along a circle a little larger counts the roots in it; the Fourier series of
     the logarithm holds their power sums (Oppenheim and Schafer, Discrete-Time Signal Processing, 3rd ed., Ch.

@@ -71,9 +71,9 @@ def symmetric(
 ) -> Factors:
     """Return factors in which row and column of one degree of freedom are one unknown: mass-normalised shapes.
 
-    Gauss-Newton on sum |A_ij - phi_i phi_j|^2 / sigma_ij^2. Rows that are no columns are linear in the columns
-    and eliminated, so that the equations have the size of the columns. The covariance is that of the
-    normal equations at the end: what drive points say of the scale is weighed by their variances and is in it.
+    Gauss-Newton on sum |A_ij - phi_i phi_j|^2 / sigma_ij^2. Rows that are no columns are linear in the columns and
+    eliminated, so that the equations have the size of the columns. The covariance is that of the normal equations at
+    the end: the information of drive points on the scale is weighted by their variances and is in it.
 
     Parameters
     ----------

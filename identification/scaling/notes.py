@@ -1,4 +1,4 @@
-"""What is said of the scale of mode shapes."""
+"""Notes on the scale of mode shapes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _DELAYED = np.radians(20.0)
 
 
 def no_drive_point(frfs: FrfSet) -> str:
-    """Say that no FRF gives the scale, and how near the nearest came."""
+    """State that no FRF gives the scale, and how near the nearest came."""
     return (
         f"no drive point: no point was both hit and measured at one node and axis{_nearest(frfs)}, so the mode "
         "shapes are not mass-normalised; measure one drive point to scale them"
@@ -41,7 +41,7 @@ def _nearest(frfs: FrfSet) -> str:
 
 
 def not_tied(points: Sequence[str]) -> str:
-    """Say which points are left out of the shapes."""
+    """State which points are left out of the shapes."""
     listed = ", ".join(points[:5]) + (f" and {len(points) - 5} more" if len(points) > 5 else "")
     return (
         f"no FRF ties {listed} to the other points; their scale and sign relative to the others are unknown, and "
@@ -50,7 +50,7 @@ def not_tied(points: Sequence[str]) -> str:
 
 
 def about_scale(plan: Arrangement, column: IntArray, certainty: FloatArray) -> tuple[str, ...]:
-    """Say in which modes the scale is uncertain.
+    """State in which modes the scale is uncertain.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def contradicted(
 def about_drive_points(
     plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray, alone: BoolArray
 ) -> tuple[str, ...]:
-    """Say where a drive point contradicts a passive structure; parameters as for :func:`contradicted`."""
+    """State where a drive point contradicts a passive structure; parameters as for :func:`contradicted`."""
     stated = []
     for i in _measured(plan, column):
         frf = plan.index[i, column[i]]
@@ -125,7 +125,7 @@ def about_drive_points(
 
 
 def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
-    """Say what a negative drive-point constant means: a passive structure has none."""
+    """State what a negative drive-point constant means: a passive structure has none."""
     statement = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
     if others:
         return Consequential(

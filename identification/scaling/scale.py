@@ -28,7 +28,7 @@ def mode_shapes(
 
     The constants of one mode form a matrix of rank one, whose weighted least-squares factors are the shape
     and the participations. A drive point (response and reference at one node and axis, whichever way the
-    transducers point) gives phi_d^2 = A_dd and with it the scale. Several are weighed by their variances, and
+    transducers point) gives phi_d^2 = A_dd and with it the scale. Several are weighted by their variances, and
     so is what references say of one another: A_12 A_13 / A_23 = phi_1^2. The phase is turned so that the
     shape is as real as it can be.
 
@@ -75,7 +75,7 @@ def mode_shapes(
 
 
 def _alone(poles: ComplexArray) -> BoolArray:
-    """Tell which modes overlap with no other."""
+    """Return which modes overlap with no other."""
     apart = np.abs(poles.imag[:, None] - poles.imag)
     np.fill_diagonal(apart, np.inf)
     return np.asarray((apart > -_APART * (poles.real[:, None] + poles.real)).all(axis=1))
@@ -103,7 +103,7 @@ def _tied_together(plan: Arrangement) -> tuple[Arrangement, tuple[str, ...]]:
 def _scaled(start: Factors, weight: FloatArray, column: IntArray) -> tuple[Factors, FloatArray]:
     """Return phi = c long with c^2 long_d = short_d, and c^2 over its standard deviation [-].
 
-    Where c^2 drowns in its standard deviation, that takes its place.
+    Where c^2 is below its standard deviation, that takes its place.
     """
     tied = np.flatnonzero(column >= 0)
     here, there = start.long[tied], start.short[column[tied]]
@@ -125,7 +125,7 @@ def _scaled(start: Factors, weight: FloatArray, column: IntArray) -> tuple[Facto
 
 
 def _sane(polished: Factors, start: Factors) -> BoolArray:
-    """Tell for which modes the Gauss-Newton steps stayed near their start."""
+    """Return for which modes the Gauss-Newton steps stayed near their start."""
     moved = np.linalg.norm(polished.long - start.long, axis=0)
     return np.asarray(np.isfinite(moved) & (moved < np.linalg.norm(start.long, axis=0)))
 

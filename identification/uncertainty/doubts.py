@@ -1,4 +1,4 @@
-"""What speaks against modes that the data bear out: hum, leakage, a foreign FRF, references that disagree."""
+"""Doubts about modes that the data support: hum, leakage, a foreign FRF, references that disagree."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def about(
     sigma: FloatArray,
     scatter: FloatArray,
 ) -> tuple[str, ...]:
-    """Return what the user ought to know of the modes found.
+    """Return warnings on the modes found.
 
     Parameters
     ----------
@@ -71,14 +71,14 @@ def _tones(frfs: FrfSet, poles: ComplexArray, others: ComplexArray) -> tuple[str
     pure = pure[(disagreement > _SKIRT).all(axis=1)]
     if len(pure):
         named = ", ".join(hertz(f) for f in pure)
-        stated.append(f"a tone at {named} that does not decay{_hum(frfs, pure)} was taken for no mode")
+        stated.append(f"a tone at {named} that does not decay{_hum(frfs, pure)} was not accepted as a mode")
     if not len(narrow):
         return tuple(stated)
     return (
         *stated,
         f"mode(s) {_numbers(narrow)} are narrower than a tenth of the line "
-        f"spacing{_hum(frfs, np.abs(poles[narrow]) / (2 * np.pi))}: a tone, or leakage of records "
-        "that end too early; leave them out with drop if they are none",
+        f"spacing{_hum(frfs, np.abs(poles[narrow]) / (2 * np.pi))}: a tone, or leakage of records that end "
+        "too early; if they are not modes, leave them out with drop",
     )
 
 
@@ -90,7 +90,7 @@ def _hum(frfs: FrfSet, tones: FloatArray) -> str:
 
 
 def _ringing(frfs: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
-    """Name modes that are not at rest when a record of 1/df ends, where the fit cannot know of the record."""
+    """Name modes that are not at rest when a record of 1/df ends, where the record is not known to the fit."""
     if frfs.record is not None or frfs.line_shape is not None:
         return ()
     left = np.exp(-(frfs.decay - poles.real) / frfs.df)

@@ -2,8 +2,8 @@
 
 A hit's share in the error of the FRFs moves the fit by J^+ W s, so the sum of squares over the hits is the
 covariance of the fit: the sandwich estimator (White, Econometrica 48 (1980) 817-838; for groups of related
-data Liang and Zeger, Biometrika 73 (1986) 13-22). It knows of a hit that missed its point, of responses that
-share a force, and of lines tied together by a window. What it does not know it cannot have seen: there are as
+data Liang and Zeger, Biometrika 73 (1986) 13-22). It includes hits that missed their point, responses that
+share a force, and of lines tied together by a window. What it does not include it cannot have seen: there are as
 many terms as hits. So it is used for the ratio to the covariance the weights give, and few hits are shrunk to it.
 """
 
@@ -89,7 +89,7 @@ class _Sums:
 def factors(
     frfs: FrfSet, fit: Fit, weights: normal_equations.Weights, modes: BoolArray, prior: NoiseFactors
 ) -> NoiseFactors | None:
-    """Return the noise factors the hits tell, or None where no scatter of hits came with the FRFs.
+    """Return the noise factors from the hits, or None where no scatter of hits came with the FRFs.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the residual at each line says of the variance of the poles, where errors go together over lines and FRFs.
+"""Variance of the poles from the residual at each line, where errors go together over lines and FRFs.
 
 Averages over windowed blocks err at a line and its neighbours, and in all outputs of a force, by the same: what rings
 into a block and out of it is of the mode, not of the output. The sum over the lines of what each pulls the poles by,
@@ -24,7 +24,7 @@ from identification.fit.noise.common_spread import pulls
 
 LAGS = 4
 """Lines over which errors go together at the most: a Hann window ties two on either side. Doubled, few lines of a
-narrow peak tell less of its scatter."""
+narrow peak determine less of its scatter."""
 
 SMOOTHED = (1.0, 2 / 3, 1 / 6)
 """Correlation of smoothed white noise at a line with that at the same, the next and the one after it [-]."""
@@ -33,7 +33,7 @@ SMOOTHED = (1.0, 2 / 3, 1 / 6)
 def line_factors(fitted: Fitted) -> FloatArray:
     """Return by what factor the scatter of the lines raises the variance of each pole, (n_modes,) [-], 1 or more.
 
-    The few lines of one peak know their scatter poorly: a mode's factor is never under the mean of all.
+    The few lines of one peak determine their scatter poorly: a mode's factor is never under the mean of all.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from updating.prediction.predict import Predictor
 
 
 def acceptable(effects: Sequence[str]) -> bool:
-    """Tell whether the effects of a row can be put into the model: there are some, and none is a hypothesis."""
+    """Return whether the effects of a row can be put into the model: there are some, and none is a hypothesis."""
     return bool(effects) and all(name in LIBRARY for name in effects)
 
 

@@ -98,7 +98,7 @@ class Controller:
             If there is no such change, or it cannot be made; the study then stays as it is.
         """
         if name not in ACTIONS:
-            raise InputError(f"there is no change called {name!r}")
+            raise InputError(f"unknown change {name!r}")
         with self._lock:
             content, label = ACTIONS[name](self._history.now.content, arguments)
             study = self._opened.study(content)
@@ -141,7 +141,7 @@ class Controller:
     def _processed(self) -> Processed:
         processed = self._workbench.processed(self.study)
         if processed is None:
-            raise InputError("this test has modes alone, no hits and no FRFs")
+            raise InputError("this test has modes only, without hits or FRFs")
         return processed
 
     def modes(self) -> dict[str, Any]:
@@ -221,7 +221,7 @@ class Controller:
     def work(self, kind: str) -> dict[str, Any]:
         """Return how a kind of work on this state stands."""
         if kind not in KINDS:
-            raise InputError(f"there is no work called {kind!r}")
+            raise InputError(f"unknown job {kind!r}")
         job = self._jobs.last
         mine = job is not None and job.kind == kind and job.key == self._key
         return {

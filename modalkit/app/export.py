@@ -43,7 +43,7 @@ class Handed:
 
 
 def study_text(opened: Opened, content: Mapping[str, Any], title: str, folder: Path) -> str:
-    """Return the study as a file of another folder says it.
+    """Return the study as a file in another folder.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def export(folder: Path, study: str, handed: Handed) -> list[str]:
         If the folder exists already, or cannot be written.
     """
     if folder.exists():
-        raise InputError(f"{folder}: is there already; nothing is written over")
+        raise InputError(f"{folder}: exists; it is not overwritten")
     half = folder.with_name(f".{folder.name}.half")
     shutil.rmtree(half, ignore_errors=True)
     try:

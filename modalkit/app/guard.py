@@ -87,7 +87,7 @@ class Guard:
         if any(not n.isdigit() or int(n) > LARGEST for n in headers.get(b"content-length", [])):
             return "the request is too long"
         if b"transfer-encoding" in headers:
-            return "a request says how long it is"
+            return "a request must state its length"
         given = scope["path"].split("/", 2)[1] if scope["path"].startswith("/") else ""
         if not secrets.compare_digest(given.encode(), self.token.encode()):
             return "the address lacks its token; use the one that the command printed"

@@ -98,7 +98,7 @@ class Jobs:
             If there is no such work, or some is running.
         """
         if kind not in KINDS:
-            raise InputError(f"there is no work called {kind!r}; there are {', '.join(KINDS)}")
+            raise InputError(f"unknown job {kind!r}; there are {', '.join(KINDS)}")
         with self._lock:
             if self._job is not None and self._job.state == "running":
                 raise InputError(f"{self._job.kind} is running; stop it, or wait for its end")
@@ -143,7 +143,7 @@ def _watch(job: Job) -> None:
 
 
 def _note(job: Job, line: str) -> bool:
-    """Note what a line of the process says, and tell whether it is news; the last is that the work is done."""
+    """Record a line of the process, and return whether it is new; the last is that the work is done."""
     try:
         news = json.loads(line)
     except ValueError:

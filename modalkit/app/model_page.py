@@ -1,4 +1,4 @@
-"""The page of the model: what the study says, and what changes if effects are put into it."""
+"""The page of the model: what the study states, and what changes if effects are put into it."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class Moved:
 
 
 def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, why: str) -> dict[str, Any]:
-    """Return what the study says, and where it has a model, pairs, MAC and what can be moved."""
+    """Return what the study states, and where it has a model, pairs, MAC and what can be moved."""
     page: dict[str, Any] = {
         "text": toml_text(content),
         "fields": _fields(content, study),
@@ -144,7 +144,7 @@ def _factors(spec: Spec) -> list[dict[str, Any]]:
 
 
 def _scales(spec: Spec, name: str, *, regional: bool = False) -> bool:
-    """Tell whether a factor means something to a model; imported matrices know few."""
+    """Return whether a factor means something to a model; imported matrices have few."""
     return spec.imported is None or spec.imported.obstacle(name, regional=regional) is None
 
 
@@ -260,7 +260,7 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
 
 
 def _frf(identified: ModalModel, row: int, predictor: Predictor, paired: Paired) -> dict[str, Any] | None:
-    """Return an FRF with the model's; None where it is none of the test's."""
+    """Return an FRF with the model's; None where it is not one of the test's."""
     frfs = identified.frfs.select([row])
     try:
         both = correlate_frfs(frfs, predictor.measured, predictor, predictor.predict(), paired)

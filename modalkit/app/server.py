@@ -120,9 +120,9 @@ async def _changed(request: Request) -> Response:
     try:
         arguments = json.loads(await request.body() or b"{}")
     except ValueError:
-        return JSONResponse({"error": "the request is no JSON"}, 400)
+        return JSONResponse({"error": "the request is not JSON"}, 400)
     if not isinstance(arguments, dict):
-        return JSONResponse({"error": "the request is no object"}, 400)
+        return JSONResponse({"error": "the request is not an object"}, 400)
     return await _answered(request, CHANGES, arguments)
 
 
@@ -153,7 +153,7 @@ async def _report(request: Request) -> Response:
 
 def _mapping(value: Any) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise InputError("an object of names and values is wanted")
+        raise InputError("an object of names and values is needed")
     return value
 
 

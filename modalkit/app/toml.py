@@ -40,7 +40,7 @@ def _table(content: Mapping[str, Any], path: tuple[str, ...], lines: list[str]) 
 
 
 def _of_tables(value: Any) -> bool:
-    """Tell whether a value has a header of its own."""
+    """Return whether a value has a header of its own."""
     if isinstance(value, Mapping):
         return True
     return isinstance(value, list) and bool(value) and all(isinstance(v, Mapping) for v in value)

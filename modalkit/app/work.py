@@ -123,7 +123,7 @@ def _draw(folder: Path, whole: Document) -> None:
 
 
 def plan(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
-    """Forecast what the test of a study tells apart."""
+    """Forecast which effects the test of a study separates."""
     from modalkit.planning import forecast
     from modalkit.planning.document import to_json
     from modalkit.planning.note import note

@@ -99,7 +99,7 @@ class Workbench:
         """
         modes = self.modes(study)
         if isinstance(modes, Modes):
-            raise InputError("this test has modes alone, no FRFs they were identified from")
+            raise InputError("this test has modes only, without the FRFs they were identified from")
         return modes
 
     def modal(self, study: Study) -> ModalData:
@@ -146,7 +146,7 @@ class Workbench:
         """
         processed = self.processed(study)
         if processed is None:
-            raise InputError("this test has modes alone; there is nothing to pick in")
+            raise InputError("this test has modes only; there are no FRFs to pick poles from")
         test = study.test
         band = processed.within(test.band, [*test.add, *test.drop, hertz])
         return processed.prepared(band, test.order).provisional(hertz, add=test.add)

@@ -102,7 +102,7 @@ def run_batch(
     Raises
     ------
     InputError
-        If there are no workers, the store is no store of a batch, or the scheduler cannot be reached.
+        If there are no workers, the store is not a store of a batch, or the scheduler cannot be reached.
     """
     if workers < 1:
         raise InputError(f"--workers {workers}: at least 1 is needed")

@@ -1,4 +1,4 @@
-"""The rig that keeps secrets: blind trials of the diagnosis, and their score.
+"""The rig with hidden effects: blind trials of the diagnosis, and their score.
 
 It shares no model code with the candidates: it imports nothing from the room that holds them.
 """

@@ -38,7 +38,7 @@ class Row:
     probability : float
         Of the set, among all that were compared and no effect at all [-].
     fit : float
-        Probability that data of this set fit no better than these; nan where it is not told [-].
+        Probability that data of this set fit no better than these; nan where it is not stated [-].
     parameters : dict of str to Estimate
         By ``effect.parameter``.
     points : dict of str to tuple of int
@@ -54,7 +54,7 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What a diagnosis says.
+    """What a diagnosis states.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Answer:
     held_out : dict of str to float
         Errors on data held out, ``before_percent`` and so on [%].
     closed : Estimate or None
-        Share of the gap that it says is closed [%].
+        Share of the gap that it states as closed [%].
     metric : str
         What the errors are of: frequency, damping, frf or combined.
     """
@@ -203,7 +203,7 @@ def _estimate(parameter: Mapping[str, Any]) -> Estimate:
 
 
 def _number(value: Any) -> float:
-    """Read a number; ``null`` says that it could not be determined."""
+    """Read a number; ``null`` means that it could not be determined."""
     return NAN if value is None else float(value)
 
 

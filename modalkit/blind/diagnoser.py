@@ -35,7 +35,7 @@ class Diagnoser:
     def __init__(
         self, *, command: Sequence[str] = COMMAND, timeout: float = TIMEOUT, attempts: int = ATTEMPTS
     ) -> None:
-        """Say what is to be started; it starts on entering the context."""
+        """State what is to be started; it starts on entering the context."""
         self.process = WarmProcess(command=command, timeout=timeout, attempts=attempts)
 
     def __enter__(self) -> Self:
@@ -78,7 +78,7 @@ def read_diagnosis(path: Path) -> dict[str, Any]:
     Raises
     ------
     EstimationError
-        If it is no JSON.
+        If it is not JSON.
     """
     try:
         document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""One trial, opened: what was hidden, what was said, and the seal that proves the first came before the second."""
+"""One trial, opened: what was hidden, what was answered, and the seal that proves the first came before the second."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Outcome:
     truth : Truth
         What was hidden.
     answer : Answer or None
-        What the diagnosis said; None where it failed.
+        What the diagnosis stated; None where it failed.
     document : mapping or None
         The diagnosis as JSON, without the modes of the gap; None where it failed.
     failure : str or None

@@ -79,7 +79,7 @@ def read(scene: Scene, *, like: ComplexModes | None = None) -> Reading:
     scene : Scene
         With whatever is hidden.
     like : ComplexModes, optional
-        What is looked for; default the lowest.
+        Modes to find; default the lowest.
     """
     setup = scene.setup
     modes = coarse(scene).elastic()

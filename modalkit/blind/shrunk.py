@@ -1,4 +1,4 @@
-"""How far an answer truly closes the gap: what it says, put into the rig's own nominal body."""
+"""How far an answer truly closes the gap: what it states, put into the rig's own nominal body."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
     trial : Trial
         With the true specimen.
     answer : Answer
-        What the diagnosis says; its most probable row counts.
+        What the diagnosis states; its most probable row counts.
 
     Returns
     -------
@@ -134,7 +134,7 @@ def _values(name: str, row: Row) -> dict[str, Any]:
 
 
 def _as_box(values: dict[str, Any]) -> dict[str, Any]:
-    """Return a soft place as the library means it, a box, and with the compliance that is told, which counts."""
+    """Return a soft place as the library means it, a box, and with the compliance that is stated, which counts."""
     if "compliance" not in values:
         return values | {"form": "rectangle"}
     left = max(values["compliance"] + values["extent"], _RIGID * values["extent"])

@@ -206,7 +206,7 @@ def _check_header(path: Path, header: Mapping[str, Any]) -> None:
 def _check_seed(path: Path, header: Mapping[str, Any], seed: int) -> None:
     digest = _digest(seed, header["seed"]["salt"])
     if not hmac.compare_digest(digest, header["seed"]["pbkdf2_sha256"]):
-        raise InputError(f"{path}: begun with another seed than {seed}; give --seed as that run told it")
+        raise InputError(f"{path}: begun with another seed than {seed}; give the --seed printed by that run")
 
 
 def _check_run(path: Path, header: Mapping[str, Any], seed: int, plan: DrawRanges) -> None:

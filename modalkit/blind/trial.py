@@ -276,7 +276,7 @@ def write_trial(trial: Trial, folder: Path) -> Path:
     Returns
     -------
     Path
-        The study file. Nothing in the folder tells seed, index or truth; the same trial gives the same files.
+        The study file. Nothing in the folder reveals seed, index or truth; the same trial gives the same files.
     """
     setup = trial.scene.setup
     first, second = np.random.default_rng([trial.seed, trial.index, 1]).spawn(2)

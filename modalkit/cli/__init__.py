@@ -78,9 +78,7 @@ def main() -> None:
     ) as error:
         if debug:
             raise
-        _fail(
-            f"this should not have happened: {type(error).__name__}: {error}; `modalkit --debug ...` says where"
-        )
+        _fail(f"internal error: {type(error).__name__}: {error}; `modalkit --debug ...` shows where")
     else:
         sys.exit(code if isinstance(code, int) else 0)
 

@@ -1,4 +1,4 @@
-"""What can be said against the words of a command before the command is loaded: options, files, band, study.
+"""Checks of the words of a command before the command is loaded: options, files, band, study.
 
 A command loads the numerical libraries, which takes seconds; a misspelt option, a file that is not there, a band in the
 wrong order or a key that a study does not have is refused without them.

@@ -54,7 +54,7 @@ def batch(
     places = [*table_places(output), (store, store_of("modalkit.batchrun/1"))]
     check_outputs(*places)
     check_folder(json_dir)
-    with progress.status("looking for studies"):
+    with progress.status("searching for studies"):
         studies = find_studies(folder)
     parts = [] if json_dir is None else [_part_place(json_dir, one.name) for one in studies]
     there = [(path, PART) for path in parts if path.exists()]

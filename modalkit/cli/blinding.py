@@ -31,7 +31,8 @@ _DOCUMENTS = {"": "blind", "STUDY": "plan", "--real": "real", "--check": "blind"
 """What is written as JSON."""
 
 OwnStudy = Annotated[
-    Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/tutorials/plan.md)")
+    Path | None,
+    typer.Argument(help="your own study: which effects can its test separate? (docs/tutorials/plan.md)"),
 ]
 Trials = Annotated[int | None, typer.Option(help="number of trials; default 60, with a STUDY none")]
 Seed = Annotated[int | None, typer.Option(help="seed of the run; default: drawn at random and printed")]
@@ -88,7 +89,7 @@ def blind(
     report: Report = None,
     figures: Figures = None,
 ) -> None:
-    """Hide effects in simulated rigs, diagnose them without telling, and score the answers."""
+    """Hide effects in simulated tests, diagnose these blind, and score the answers."""
     given = {
         "--trials": trials, "--seed": seed, "--scheduler": scheduler, "--store": store, "--resume": resume,
         "--kinds": kinds, "--effects": effects, "--leave-out": leave_out, "--json": json, "--markdown": markdown,
@@ -161,7 +162,7 @@ def _is_given(value: object) -> bool:
 def _only_one(asked: Sequence[str]) -> str:
     """Return what is asked for in place of trials; "" for trials."""
     if len(asked) > 1:
-        raise InputError(f"{' and '.join(asked)}: each is something else to do; give one")
+        raise InputError(f"{' and '.join(asked)}: these are different commands; give one")
     return asked[0] if asked else ""
 
 
@@ -172,7 +173,7 @@ def _check_together(job: str, given: Sequence[str]) -> None:
         do, them = ("does", "it") if len(idle) == 1 else ("do", "them")
         raise InputError(f"{', '.join(idle)} {do} not go with {job}; leave {them} out")
     if "--resume" in given and "--store" not in given:
-        raise InputError("--resume: go on with what? give the --store of the run")
+        raise InputError("--resume needs the --store of the run to continue")
 
 
 def _check_numbers(trials: int | None, seed: int | None, workers: int, *, least: int) -> None:
@@ -187,11 +188,11 @@ def _check_numbers(trials: int | None, seed: int | None, workers: int, *, least:
 
 
 def _seed(seed: int | None, store: Path | None, resume: bool) -> int:
-    """Return the seed; one that is drawn is needed to resume, and so is told before the run."""
+    """Return the seed; one that is drawn is needed to resume, and so is printed before the run."""
     if seed is not None:
         return seed
     if store is not None and resume and store.exists():
-        raise InputError(f"{store}: resumed without its seed; give --seed as the run told it when it began")
+        raise InputError(f"{store}: resuming needs its seed; give the --seed printed when the run began")
     drawn = secrets.randbits(_SEED_BITS)
     if store is not None:
         progress.print(

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _LONGEST_NAME = 1000  # characters of a path; a longer text of a study is none
 _MOST_WORKERS = 1000
-_PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
+_PIPE_WIDTH = 160  # characters a table may take where no terminal states its width
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
 progress = Console(stderr=True)
@@ -123,7 +123,7 @@ def check_once(studies: Sequence[Path]) -> None:
     seen: set[Path] = set()
     for path in studies:
         if path.resolve() in seen:
-            raise InputError(f"{path}: given twice; the same test is no further information")
+            raise InputError(f"{path}: given twice; the same test adds no information")
         seen.add(path.resolve())
 
 
@@ -142,7 +142,7 @@ def check_workers(workers: int) -> None:
 
 
 def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] | None = None) -> None:
-    """Print a table; columns of numbers to the right, with as many decimals as told."""
+    """Print a table; columns of numbers to the right, with the given number of decimals."""
     table = Table(
         title=escape(title) or None, title_justify="left", box=None, pad_edge=False, header_style="bold"
     )
@@ -205,7 +205,7 @@ def show_figures(folder: Path | None, build: Callable[[], dict[str, Any]]) -> No
 
 @contextmanager
 def drawing() -> Iterator[None]:
-    """Say that figures are drawn, as on every machine: a ``matplotlibrc`` in the current folder is not followed."""
+    """State that figures are drawn, as on every machine: a ``matplotlibrc`` in the current folder is not followed."""
     from matplotlib import style
 
     with working("drawing"), style.context("default", after_reset=True):

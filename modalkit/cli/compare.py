@@ -61,7 +61,7 @@ def correlate(
     json: Json = None,
     figures: Figures = None,
 ) -> None:
-    """Pair the modes of test and model, or of two tests, and say how far they agree, FRFs included."""
+    """Pair the modes of test and model, or of two tests, and show how well they agree, FRFs included."""
     schema = "modalkit.correlation/1" if other is None else "modalkit.comparison/1"
     check_outputs((json, json_of(schema)), reads=read_by([s for s in (study, other) if s]))
     check_folder(figures)
@@ -70,7 +70,7 @@ def correlate(
         return
     if not is_study(study):
         raise InputError(
-            f"{study}: is no study; name a study file, or a second test to compare this one with"
+            f"{study}: is not a study; name a study file, or a second test to compare this one with"
         )
     with working("reading and identifying"):
         session = open_study(read_study(study), with_baseline=False)
@@ -85,7 +85,7 @@ def correlate(
         if len(table):
             show_table(table, f"{whose} modes without a partner")
     if len(result.frac):
-        title = "FRAC per FRF (peaks that do not overlap make it near 0, however alike the shapes)"
+        title = "FRAC per FRF (near 0 where peaks do not overlap, however similar the shapes)"
         show_table(_named_frac(result.frac), title, digits={"FRAC": 3})
     if result.frfs is not None:
         out.print(f"Model's FRFs: {result.frfs.damping}.")
@@ -145,7 +145,7 @@ def tables(
     ] = False,
     figures: Figures = None,
 ) -> None:
-    """Make the papers' tables through the whole chain, our value beside the published one."""
+    """Compute the papers' tables with the whole chain, next to the published values."""
     from modalkit.papers.render import render
     from modalkit.papers.tables import fluid_work, work
 

@@ -33,7 +33,7 @@ def demo(
         hits = session.processed.hits
         out.print(f"{len(hits)} hits read, {sum(not h.used for h in hits)} left out. Modes identified:")
         show_table(session.identified.table())
-    with working("weighing the effects"):
+    with working("comparing the effects"):
         diagnosis = examine(session.case)
     show_diagnosis(diagnosis, session)
     show_figures(figures, lambda: diagnosis_figures(diagnosis, session))

@@ -50,19 +50,19 @@ def diagnose(
     without: Annotated[str, typer.Option(help="effects to remove from the library, comma-separated")] = "",
     rules: Annotated[
         Path | None,
-        typer.Option(help="TOML file of what the verdict is decided by, where not by the defaults"),
+        typer.Option(help="TOML file with decision rules that replace the defaults"),
     ] = None,
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
     report: Report = None,
     figures: Figures = None,
 ) -> None:
-    """Say where the gap between test and model lies, what causes it, and how far it closes."""
+    """Find where the gap between test and model lies, what causes it, and how far it closes."""
     _check_places(studies, rules, json, report, figures)
     check_once(studies)
     decided_by = DEFAULT_RULES if rules is None else read_rules(rules)
     with working("reading and identifying"):
         sessions = [open_study(read_study(path)) for path in studies]
-    with working("weighing the effects"):
+    with working("comparing the effects"):
         diagnosis = diagnose_studies(sessions, _names(shared), _names(without), rules=decided_by)
     show_diagnosis(diagnosis, *sessions)
     if json is not None:
@@ -136,7 +136,7 @@ def effects(
     json: Annotated[Path | None, typer.Option("--json", help="file for the library as JSON")] = None,
     table: Annotated[bool, typer.Option("--table", help="print one row each, in Markdown")] = False,
 ) -> None:
-    """List the effects that can be named, with priors, footprints and what separates them."""
+    """List the effects of the library, with priors, signatures and the tests that separate them."""
     check_outputs((json, json_of("modalkit.effects/1")))
     record = effects_document()
     if json is not None:

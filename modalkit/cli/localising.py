@@ -1,4 +1,4 @@
-"""The command that says which region of a model its test speaks against: localise."""
+"""The command that ranks the regions of a model by how far its test contradicts them: localise."""
 
 from __future__ import annotations
 
@@ -31,11 +31,13 @@ def localise(
     method: Annotated[
         list[str] | None, typer.Option(help=f"one of {', '.join(METHODS)}; repeat; default: all")
     ] = None,
-    kind: Annotated[str, typer.Option(help=f"what of a region may be wrong: {', '.join(KINDS)}")] = KINDS[0],
+    kind: Annotated[
+        str, typer.Option(help=f"property of a region that may be wrong: {', '.join(KINDS)}")
+    ] = KINDS[0],
     json: Annotated[Path | None, typer.Option("--json", help="file for the result as JSON")] = None,
     figures: Figures = None,
 ) -> None:
-    """Say which region of the model the test speaks against, by several methods side by side."""
+    """Rank the regions of the model by how far the test contradicts them, by several methods."""
     chosen = next((one for one in KINDS if one == kind), None)
     if chosen is None:
         raise InputError(f"--kind {kind}: write one of {', '.join(KINDS)}")
@@ -61,12 +63,15 @@ def _show(found: Localisation) -> None:
     if found.spread:
         out.print(found.spread, markup=False)
     if found.unchanged is not None:
-        text = f"Probability that none is changed, if not more than one is: {probability(found.unchanged)}"
+        text = (
+            "Probability that no region is changed, given that at most one is: "
+            f"{probability(found.unchanged)}"
+        )
         out.print(text, markup=False)
     out.print()
     table = found.table()
     digits = {str(c): 4 for c in table.columns if str(c).endswith("[m]")} | {"probability": 3}
-    show_table(table, f"Rank of each region if its {found.kind} alone is wrong", digits=digits)
+    show_table(table, f"Rank of each region if only its {found.kind} is wrong", digits=digits)
     methods = {one.method: METHODS[one.method] for one in found.found}
     for text, names in grouped(
         {n: f"{m.summary} {m.needs} {m.misleads}" for n, m in methods.items()}

@@ -96,7 +96,7 @@ def inspect(
         ),
     ] = None,
 ) -> None:
-    """List what is in a file, and what is wrong with it."""
+    """List the content of a file, and its faults."""
     statement = ProcessingOptions(decay=decay)
     if write_layout is not None:
         layout = _written_layout(files, layout, write_layout)
@@ -141,7 +141,8 @@ def _written_layout(files: Sequence[Path], layout: Path | None, place: Path) -> 
         )
     write_text(place, propose_layout(files))
     out.print(
-        f"written: {place}; each line says what was guessed and why: check it before you use it", markup=False
+        f"written: {place}; each line states what was guessed and why: check it before you use it",
+        markup=False,
     )
     return place
 
@@ -203,7 +204,7 @@ def frf(
     sensor_mass: SensorMass = None,
     figures: Figures = None,
 ) -> None:
-    """Turn hits into FRFs with coherence, and write them as UFF."""
+    """Estimate FRFs with coherence from hits, and write them as UFF."""
     check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
     check_folder(figures)
     statement = processing(
@@ -253,7 +254,7 @@ def identify(
     report: Report = None,
     figures: Figures = None,
 ) -> None:
-    """Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already."""
+    """Identify frequencies, damping and mode shapes with uncertainties, or show existing modes."""
     check_outputs(
         (json, json_of("modalkit.modes/1")),
         (output, modes_kind(output)),
@@ -304,7 +305,9 @@ def _identified(
         from modalkit.workflow.case import process
 
         if statement != ProcessingOptions():
-            raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
+            raise StudyError(
+                f"{files[0]}: a study states under [test] how its files are treated; write it there"
+            )
         return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
     found = read(files, processing=statement, progress=progress)
     if not isinstance(found, Modes):

@@ -45,20 +45,20 @@ ENTRIES = (
     Entry(
         "inspect",
         "measuring",
-        "List what is in a file, and what is wrong with it.",
+        "List the content of a file, and its faults.",
         "--decay 1, --layout 1, --all, --write-layout 1",
     ),
     Entry(
         "frf",
         "measuring",
-        "Turn hits into FRFs with coherence, and write them as UFF.",
+        "Estimate FRFs with coherence from hits, and write them as UFF.",
         "--output -o 1, --decay 1, --window-on 1, --window 1, --estimator 1, --use 1, --leave 1, "
         "--layout 1, --sensor-mass 1, --figures 1",
     ),
     Entry(
         "identify",
         "measuring",
-        "Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already.",
+        "Identify frequencies, damping and mode shapes with uncertainties, or show existing modes.",
         "--band 2, --order 1, --add 1, --drop 1, --decay 1, --window-on 1, --window 1, "
         "--frf-window 1, --estimator 1, --use 1, --leave 1, --layout 1, --sensor-mass 1, --json 1, "
         "--output -o 1, --check, --report 1, --figures 1",
@@ -66,50 +66,50 @@ ENTRIES = (
     Entry(
         "correlate",
         "compare",
-        "Pair the modes of test and model, or of two tests, and say how far they agree, FRFs included.",
+        "Pair the modes of test and model, or of two tests, and show how well they agree, FRFs included.",
         "--json 1, --figures 1",
     ),
     Entry(
         "localise",
         "localising",
-        "Say which region of the model the test speaks against, by several methods side by side.",
+        "Rank the regions of the model by how far the test contradicts them, by several methods.",
         "--method 1, --kind 1, --json 1, --figures 1",
     ),
     Entry(
         "tables",
         "compare",
-        "Make the papers' tables through the whole chain, our value beside the published one.",
+        "Compute the papers' tables with the whole chain, next to the published values.",
         "--paper 1, --format 1, --output -o 1, --fluid, --figures 1",
     ),
     Entry(
         "update",
         "updating",
-        "Update the parameters named in the study's update table, by eigenvalues or by FRFs.",
+        "Update the parameters listed under [update] in the study, by frequencies or by FRFs.",
         "--shared 1, --bootstrap 1, --seed 1, --json 1, --report 1, --figures 1",
     ),
     Entry(
         "diagnose",
         "diagnosing",
-        "Say where the gap between test and model lies, what causes it, and how far it closes.",
+        "Find where the gap between test and model lies, what causes it, and how far it closes.",
         "--shared 1, --without 1, --rules 1, --json 1, --report 1, --figures 1",
     ),
     Entry(
         "effects",
         "diagnosing",
-        "List the effects that can be named, with priors, footprints and what separates them.",
+        "List the effects of the library, with priors, signatures and the tests that separate them.",
         "--json 1, --table",
     ),
     Entry(
         "simulate",
         "simulating",
-        "Make a synthetic hammer test of a study's model, with effects in it.",
+        "Simulate a hammer test of a study's model, with effects added.",
         "--output -o 1, --effect 1, --seed 1, --frfs, --hits 1, --samples 1, --rate 1, "
         "--noise 1, --points 1, --remount, --figures 1",
     ),
     Entry(
         "blind",
         "blinding",
-        "Hide effects in simulated rigs, diagnose them without telling, and score the answers.",
+        "Hide effects in simulated tests, diagnose these blind, and score the answers.",
         "--trials 1, --seed 1, --workers 1, --scheduler 1, --store 1, --resume, --kinds 1, "
         "--effects 1, --leave-out, --real, --data 1, --check 1, --json 1, --markdown 1, "
         "--report 1, --figures 1",

@@ -1,4 +1,4 @@
-"""The command that plans a test: what it tells apart, from when on, and what to change."""
+"""The command that plans a test: which effects it separates, from when on, and what to change."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def plan_study(
     figures: Path | None = None,
     report: Path | None = None,
 ) -> None:
-    """Forecast what the test of a study tells apart, and check it by blind trials on the study's own model.
+    """Forecast which effects the test of a study separates, and check it by blind trials on the study's own model.
 
     Parameters
     ----------
@@ -87,17 +87,17 @@ def _figures(found: Forecast) -> dict[str, Any]:
 
 
 def show_note(name: str, found: Forecast) -> None:
-    """Print what a colleague would say in ten lines."""
+    """Print what a colleague would report in ten lines."""
     bench = found.bench
     out.print(name, style="bold", markup=False)
     for line in note(found):
         out.print(line, markup=False)
-    out.print(f"Taken:   {'; '.join(bench.statement)}", markup=False)
+    out.print(f"Assumed: {'; '.join(bench.statement)}", markup=False)
     reasons: dict[str, list[str]] = {}
     for key, why in bench.not_forecast.items():
         reasons.setdefault(why, []).append(key)
     left = [*bench.left_out, *[f"{', '.join(keys)} ({why})" for why, keys in reasons.items()]]
-    out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
+    out.print(f"Omitted: {'; '.join(left)}; pairs of effects", markup=False)
     out.print()
 
 
@@ -112,7 +112,7 @@ def show_tables(found: Forecast) -> None:
             _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
         )
     if offered(found):
-        show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
+        show_table(_changes(found), "What a change gains", digits={"times smaller": 2, "share separated": 3})
     if idle := [one.change.measure for one in found.advice if one.worth <= 0]:
         out.print(f"Tried, without gain on the whole: {'; '.join(idle)}", markup=False)
         out.print()
@@ -127,14 +127,14 @@ def _thresholds(now: DesignForecast) -> pd.DataFrame:
         words = [family.amount(q) if math.isfinite(q) else "never" for q in sizes]
         if not family.at:
             words[0] = statement(now, name, limit.seen) or "never"
-        keys = ("seen from", "told from", "surely from", "asked about")
+        keys = ("seen from", "separated from", "surely from", "asked about")
         row = {"effect": name, **dict(zip(keys, words, strict=True))}
         rows.append({**row, "nearest": _nearest(now, name), "expected": now.outcomes[name].kind})
     return pd.DataFrame(rows)
 
 
 def _nearest(now: DesignForecast, name: str) -> str:
-    """Return the rival from which an effect is not told, or hardly; else that which comes nearest to it."""
+    """Return the rival from which an effect is not separated, or hardly; else that which comes nearest to it."""
     rivals, limit = now.outcomes[name].rivals, now.limits[name]
     if not rivals:
         return f"{limit.nearest} ({limit.sigma:.1f})"
@@ -168,7 +168,7 @@ def _changes(found: Forecast) -> pd.DataFrame:
                 "change": one.change.measure,
                 "newly separates": brings(one) or "-",
                 "times smaller": one.factor,
-                "share told": one.after.shown_share,
+                "share separated": one.after.shown_share,
             }
             for one in offered(found)
         ]

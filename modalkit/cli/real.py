@@ -1,4 +1,4 @@
-"""Real structures with their cause withheld: what is truly known beside what is said."""
+"""Real structures with their cause withheld: the known truth compared with the answers."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from modalkit.papers.a.chain import sample_folder
 from modalkit.papers.real import CASES, RULES, RealOutcome, counts, real_document, real_table, run_real
 
 _GAP = """\
-Gap: r.m.s. error of the frequencies where nothing else is said, before and after, the latter on modes held out; beside
-it the runner-up and the tolerances alone on the same modes, and the floor set by noise. "synthetic" files are no real
+Gap: r.m.s. error of the frequencies unless otherwise stated, before and after, the latter on modes held out; beside
+it the runner-up and the tolerances alone on the same modes, and the floor set by noise. "synthetic" files are not real
 data: they were made from the numbers of the papers (sample_data/README.md).
 """
 
 
 def show_real(data: Path | None, json: Path | None, workers: int) -> None:
-    """Diagnose real structures whose cause is withheld, and print what is known beside what is said.
+    """Diagnose real structures whose cause is withheld, and print what is known and what was answered.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def print_real(outcomes: Sequence[RealOutcome]) -> None:
         show_table(real_table(whole), "Real structures, their cause withheld")
     if left_out:
         show_table(real_table(left_out), "The same, the true effects taken out of the library")
-    out.print("How it is judged:", style="bold")
+    out.print("How answers are graded:", style="bold")
     out.print(RULES, markup=False)
     out.print(_GAP, markup=False)
     missing = sum(o.missing is not None for o in outcomes)

@@ -14,7 +14,7 @@ from modalkit.output.whole import write_text
 
 
 def _takes_a_score(path: Path) -> bool:
-    """Tell whether a page has the two marks, or is nothing but a score."""
+    """Return whether a page has the two marks, or is nothing but a score."""
     page = path.read_text(encoding="utf-8", errors="replace")
     return page.startswith("## What matters first\n") or (BEGIN in page and END in page)
 

@@ -27,6 +27,6 @@ def open_app(
 
     def ready(address: str) -> None:
         out.print(address, markup=False)
-        out.print("Only this machine can reach it; Ctrl-C ends it, and what was done is kept.", markup=False)
+        out.print("Only this machine can reach it; Ctrl-C stops it and keeps all changes.", markup=False)
 
     serve(file, layout=layout, port=port, browser=not no_browser, ready=ready)

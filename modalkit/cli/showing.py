@@ -55,7 +55,7 @@ def show_modes(model: ModalModel | Modes) -> None:
         where, unscaled = f"from {model.source}", "not mass-normalised"
     else:
         where = f"between {model.band[0]:g} and {model.band[1]:g} Hz"
-        unscaled = "not mass-normalised (no drive point to trust)"
+        unscaled = "not mass-normalised (no reliable drive point)"
     show_table(model.table(), f"{counted(len(model), 'mode')} {where}", digits=digits)
     if model.modal.shapes is None:
         out.print("No shapes.")
@@ -65,10 +65,11 @@ def show_modes(model: ModalModel | Modes) -> None:
     if isinstance(model, Modes):
         return
     if model.frfs.decay:
-        out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was taken out of the damping.")
+        out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was removed from the damping.")
     elif model.frfs.record is None and model.frfs.line_shape is None:
         out.print(
-            "Window: none is stated. An exponential one would still be in the damping; --decay takes it out."
+            "Window: none is stated. If an exponential window was applied, its decay is still in the "
+            "damping; --decay removes it."
         )
 
 
@@ -95,9 +96,9 @@ def show_second_opinion(processed: Processed, model: ModalModel) -> None:
         with working("asking sdypy-EMA"):
             table = second_opinion(processed.frfs, band=model.band)
     except EstimationError as error:
-        show_warnings([f"no second opinion: {error}"])
+        show_warnings([f"no comparison: {error}"])
         return
     both = beside(model.modal, table)
-    title = "Second opinion, beside ours: sdypy-EMA (LSCF)"
+    title = "For comparison: sdypy-EMA (LSCF)"
     show_table(both, title, digits=dict.fromkeys(both.columns, 4))
     show_warnings(table.attrs.get("warnings", ()))

@@ -51,7 +51,7 @@ def simulate(
     ] = False,
     figures: Figures = None,
 ) -> None:
-    """Make a synthetic hammer test of a study's model, with effects in it."""
+    """Simulate a hammer test of a study's model, with effects added."""
     options = Options(hits=hits, samples=samples, rate=rate, noise=noise, points=points, remount=remount)
     check_outputs((output, uff_of("simulated")), reads=read_by([study]))
     check_folder(figures)
@@ -81,7 +81,7 @@ def _show(made: SimulatedTest, there: Mapping[str, Effect]) -> None:
         for parameter, value in (values or {"-": float("nan")}).items()
     ]
     if rows:
-        show_table(pd.DataFrame(rows), "In it, beyond the study's model")
+        show_table(pd.DataFrame(rows), "Added to the study's model")
     plan, (low, high) = made.test_setup.plan, made.test_setup.band
     count = sum(len(test.points) for test in made.tests)
     out.print(

@@ -54,7 +54,7 @@ def update(
     report: Report = None,
     figures: Figures = None,
 ) -> None:
-    """Update the parameters named in the study's update table, by eigenvalues or by FRFs."""
+    """Update the parameters listed under [update] in the study, by frequencies or by FRFs."""
     check_outputs((json, json_of("modalkit.update/1")), *report_wanted(report), reads=read_by(studies))
     check_folder(figures)
     check_once(studies)

@@ -83,7 +83,7 @@ def curves_figure(title: str, note: str, panels: Sequence[Panel]) -> Figure:
     Parameters
     ----------
     title, note : str
-        What the figure says, and what stands behind it.
+        What the figure states, and what stands behind it.
     panels : sequence of Panel
         Pairs of points.
 

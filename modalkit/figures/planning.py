@@ -1,4 +1,4 @@
-"""What a test tells apart: from what severity on, and by how many sigma."""
+"""What a test separates: from what severity on, and by how many sigma."""
 
 from __future__ import annotations
 
@@ -58,15 +58,15 @@ def planning_figure(found: Forecast) -> Figure:
     Raises
     ------
     InputError
-        If the test has no effects to tell apart.
+        If the test has no effects to separate.
     """
     now = found.now
     if len(now.names) < 2:
         raise InputError("the forecast has fewer than two effects to draw")
     pairs = list(now.shown_pairs.values())
-    title = f"{sum(v >= SEEN for v in pairs)} of {len(pairs)} pairs of effects are told apart by this test"
+    title = f"{sum(v >= SEEN for v in pairs)} of {len(pairs)} pairs of effects are separated by this test"
     best = found.advice[0] if found.advice and found.advice[0].worth > 0 else None
-    note = f"forecast by {found.bench.basis}, tolerances and all doubts counted in"
+    note = f"forecast by {found.bench.basis}, including tolerances and all uncertainties"
     if best is not None:
         note += f"; green: {best.change.key} changed as advised"
     top = caption_height(title, note) + 0.45
@@ -112,7 +112,7 @@ def _compared(now: DesignForecast) -> list[str]:
 def _thresholds(
     axes: Axes, now: DesignForecast, after: DesignForecast | None, plain: Mapping[str, str]
 ) -> None:
-    """Draw a bar from the severity that is seen to the one that is told, over the one asked about."""
+    """Draw a bar from the severity that is detected to the one that is separated, over the one asked about."""
     tidy(axes, x="severity over the one that is asked about (right) [-]", grid="x")
     axes.set_xscale("log")
     rows = np.arange(len(now.names))
@@ -120,7 +120,9 @@ def _thresholds(
     axes.hlines(rows, seen, known_test, color=FAINT, linewidth=5.0, zorder=2)
     axes.scatter(seen, rows, s=42, facecolor="white", edgecolor=BLUE, linewidth=1.4, zorder=3, label="seen")
     never = known_test >= _MOST
-    axes.scatter(known_test[~never], rows[~never], s=46, color=BLUE, zorder=4, label="told from all others")
+    axes.scatter(
+        known_test[~never], rows[~never], s=46, color=BLUE, zorder=4, label="separated from all others"
+    )
     axes.scatter(known_test[never], rows[never], s=46, marker=">", color=BLUE, zorder=4, clip_on=False)
     if after is not None:
         then = _over_clear(after, "separated")
@@ -143,7 +145,7 @@ def _thresholds(
 
 
 def _asked(family: Family) -> str:
-    """Return what is asked about: of one at a place of its own, which its name says, the amount alone."""
+    """Return what is asked about: of one at a place of its own, which its name states, the amount alone."""
     return family.amount(family.clear) if family.at else family.say(family.clear)
 
 

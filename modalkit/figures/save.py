@@ -37,7 +37,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> list[Path
     Raises
     ------
     InputError
-        If a name is not a plain file name, the folder cannot be written to, or somebody else's file stands there.
+        If a name is not a plain file name, the folder cannot be written to, or another file stands there.
     """
     for name in figures:
         if not name or Path(name).name != name:

@@ -19,7 +19,7 @@ WIDTH = 12.0
 INK = "#1c2430"
 """Text and axes."""
 MUTED = "#667080"
-"""What is said in passing."""
+"""Colour of secondary text."""
 FAINT = "#a9b2bd"
 """What was, and what lost."""
 GRID = "#e4e8ec"
@@ -29,7 +29,7 @@ PALE, BAND = "#eef1f4", "#d5dbe1"
 BLUE = "#0b6fb8"
 """The model, the fit, the answer."""
 ORANGE = "#d9590a"
-"""What is rejected, what is left, where the cause sits. Told from blue by every kind of colour vision."""
+"""What is rejected, what is left, where the cause sits. Distinguished from blue by every kind of colour vision."""
 GREEN = "#128a66"
 """A third series, where one is needed."""
 
@@ -117,7 +117,7 @@ def caption(figure: Figure, title: str, note: str = "") -> None:
     Parameters
     ----------
     figure : Figure
-        The figure, at least as high as :func:`caption_height` says.
+        The figure, at least as high as :func:`caption_height` requires.
     title, note : str
         The answer as a sentence, and what stands behind it.
     """

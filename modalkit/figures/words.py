@@ -45,12 +45,12 @@ def parameters(row: Ranked) -> str:
 
 
 def answer(diagnosis: Diagnosis) -> str:
-    """Say the answer in one sentence."""
+    """State the answer in one sentence."""
     if diagnosis.verdict == "none":
         return f"No gap to explain: tolerances and noise make differences like these ({p_value(diagnosis.p_value)})"
     if diagnosis.verdict == "unknown" and not diagnosis.comparable:
         return (
-            "Most measured modes have no partner in the model: nothing can be named by the few that have one"
+            "Most measured modes have no partner in the model: the few that have one do not identify a cause"
         )
     if diagnosis.verdict == "unknown":
         return f"A real gap ({p_value(diagnosis.p_value)}), and nothing in the library of effects explains it"
@@ -61,7 +61,7 @@ def answer(diagnosis: Diagnosis) -> str:
     if len(named) > 4:
         named = [*named[:3], f"{len(named) - 3} others"]
     listed = ", ".join(named[:-1]) + " or " + named[-1]
-    return f"{_capital(listed)}: one of them explains the gap, and these data cannot tell which"
+    return f"{_capital(listed)}: one of them explains the gap; these data cannot show which"
 
 
 def _capital(text: str) -> str:
@@ -81,7 +81,7 @@ def _detail(diagnosis: Diagnosis) -> tuple[str, str]:
 
 
 def located(diagnosis: Diagnosis, *, plate: bool = False) -> str:
-    """Say where the cause sits."""
+    """State where the cause sits."""
     at = diagnosis.where.location
     if diagnosis.where.names:
         return f"at {' and '.join(diagnosis.where.names)}"
@@ -92,7 +92,7 @@ def located(diagnosis: Diagnosis, *, plate: bool = False) -> str:
 
 
 def evidence(diagnosis: Diagnosis) -> str:
-    """Say in one line how large the gap was and how far it closes."""
+    """State in one line how large the gap was and how far it closes."""
     shrink = diagnosis.shrink
     parts = [diagnosis.title] if diagnosis.title else []
     if diagnosis.verdict == "none":
@@ -101,5 +101,5 @@ def evidence(diagnosis: Diagnosis) -> str:
     before, after, floor = map(shrink.size, (shrink.held_before, shrink.held_after, shrink.floor))
     parts.append(f"{METRICS[shrink.metric]} gap {before} → {after} on modes held out, noise floor {floor}")
     if shrink.closed is not None and shrink.closed.determined:
-        parts.append(f"closes {shrink.closed} of what can close")
+        parts.append(f"reducible gap closed {shrink.closed}")
     return "  ·  ".join(parts)

@@ -18,7 +18,7 @@ def correlation_document(correlation: Correlation, warnings: Sequence[str] = ())
     correlation : Correlation
         The result; rows of its ``mac`` are measured modes, columns those of the model.
     warnings : sequence of str
-        What else the user ought to know.
+        What else the user should know.
     """
     return fill(
         CorrelationDocument,

@@ -11,9 +11,7 @@ from pathlib import Path
 
 from acquisition.errors import InputError
 
-_HEAD = (
-    4096  # bytes in which a file says of what kind it is: a data set 151 takes 600, a header of columns 500
-)
+_HEAD = 4096  # bytes in which a file states its kind: a data set 151 takes 600, a header of columns 500
 _FOOTER = 1_000_000  # bytes; that of 30 columns takes 10 000
 _STORE = b'{"schema":"modalkit.'
 _SCHEMA = re.compile(rb'\s*\{\s*"schema"\s*:\s*"(modalkit\.\w+)/\d+"')
@@ -71,7 +69,7 @@ def store_of(schema: str) -> Kind:
 
 
 def is_torn_header(content: bytes) -> bool:
-    """Tell whether a file is a store whose writer was killed while it wrote the first line."""
+    """Return whether a file is a store whose writer was killed while it wrote the first line."""
     return b"\n" not in content and _STORE.startswith(content[: len(_STORE)])
 
 
@@ -140,12 +138,14 @@ def check_output(path: Path, kind: Kind) -> None:
     if not path.exists():
         return
     if not path.is_file():
-        raise InputError(f"{path}: is no ordinary file; name one, as {_free(Path.cwd() / 'x', kind).name}")
+        raise InputError(
+            f"{path}: is not an ordinary file; name one, as {_free(Path.cwd() / 'x', kind).name}"
+        )
     if not os.access(path, os.W_OK):
         raise InputError(f"{path}: is read-only; name another file, as {_free(path, kind)}")
     if path.stat().st_size and not kind.known(path):
         raise InputError(
-            f"{path}: stands there and is not {kind.name}; name another file, as {_free(path, kind)}, or remove it"
+            f"{path}: exists and is not {kind.name}; name another file, as {_free(path, kind)}, or remove it"
         )
 
 

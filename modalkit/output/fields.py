@@ -1,8 +1,8 @@
 """Documents from results: a field is the attribute of its name, or the one that its annotation states.
 
-A class of :mod:`modalkit.output.schemas` says of each field its type, its meaning, and with :class:`Of` where it is
-taken from if the result calls it otherwise. Nothing is renamed anywhere else. Models of pydantic could do the same; to
-define 45 of them takes 18 times as long as 45 typed dictionaries, in every command that writes a file.
+A class of :mod:`modalkit.output.schemas` states for each field its type, its meaning, and with :class:`Of` where it
+is taken from if the result calls it otherwise. Nothing is renamed anywhere else. Models of pydantic could do the same;
+to define 45 of them takes 18 times as long as 45 typed dictionaries, in every command that writes a file.
 """
 
 from __future__ import annotations

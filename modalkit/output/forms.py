@@ -6,7 +6,7 @@ from updating.diagnosis.answer.result import ParameterEstimate
 
 
 def numbers_a_form(name: str, estimate: ParameterEstimate) -> bool:
-    """Tell whether a parameter says which form an effect has, which its sentence says in words.
+    """Return whether a parameter selects the form of an effect, which its sentence states in words.
 
     That is a number without an interval, or a whole one without a unit whose interval has no width; points are none.
 

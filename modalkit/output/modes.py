@@ -67,13 +67,13 @@ def write_modes(
     Parameters
     ----------
     path : path
-        Where to; its ending says as what.
+        Where to; its ending selects the format.
     modes : ModalModel or Modes
         The modes.
     hits : sequence of HitVerdict
         What is thought of the hits they come from; only JSON keeps it.
     warnings : sequence of str, optional
-        What the user ought to know; left out: those of the modes. Only JSON keeps them.
+        What the user should know; left out: those of the modes. Only JSON keeps them.
     title : str
         Title of a universal file.
 

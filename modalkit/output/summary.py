@@ -20,10 +20,10 @@ from updating.effects.regions import named_places
 from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
-"""Parameters that the line on the place tells."""
+"""Parameters that the line on the place shows."""
 
 SHOWN = 4
-"""So many parameters are told in the line on the cause."""
+"""So many parameters are shown in the line on the cause."""
 
 LIKELY = 0.5
 """A region is named if it holds so much of the probability [-]."""
@@ -47,7 +47,7 @@ def answers(diagnosis: Diagnosis) -> dict[str, str]:
 
 def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and (odd := _odd(diagnosis)):
-        return f"no gap beyond tolerances and noise, once data that stand alone are left out: {odd}"
+        return f"no gap beyond tolerances and noise, once isolated deviations are left out: {odd}"
     if diagnosis.verdict == "none":
         sure = "" if diagnosis.suspected is None else "that is sure to be "
         if not diagnosis.comparable:
@@ -62,7 +62,7 @@ def _cause(diagnosis: Diagnosis) -> str:
         summary = " ".join(dict.fromkeys(effect.sentence(_stated(diagnosis, effect.key)) for effect in known))
         parts = [f"{' + '.join(names)}.", summary, _elsewhere(diagnosis), _values(diagnosis)]
         return " ".join(part for part in parts if part)
-    statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
+    statement = "these data cannot separate: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
     return f"{statement}; {twin.why}" if twin else statement
 
@@ -71,17 +71,20 @@ def _suspected(row: Ranked | None) -> str:
     """Name what is probable though chance might make the gap; nothing where no cause is."""
     if row is None:
         return "there is nothing to explain"
-    return f"should there be one, {' + '.join(row.effects)} is its likeliest cause ({probability(row.probability)})"
+    return (
+        f"if there is one, its most probable cause is {' + '.join(row.effects)} "
+        f"({probability(row.probability)})"
+    )
 
 
 def _unknown(diagnosis: Diagnosis) -> str:
-    """Say what the most probable set lacks to be an answer."""
+    """State what the most probable set lacks to be an answer."""
     if not diagnosis.comparable:
         return (
-            "most measured modes have no partner in the model, and the few that have one name no cause; check axes, "
-            "points, signs and boundary conditions first"
+            "most measured modes have no partner in the model, and the few that have one do not identify "
+            "a cause; check axes, points, signs and boundary conditions first"
         )
-    nothing = "the gap is real, and nothing in the library explains it, alone or in the sets weighed"
+    nothing = "the gap is real, and no effect or set of effects compared explains it"
     if not diagnosis.ranking:
         return nothing
     first = " + ".join(diagnosis.ranking[0].effects)
@@ -89,25 +92,27 @@ def _unknown(diagnosis: Diagnosis) -> str:
         ends = [f"{name} = {e.bare}" for name, e in diagnosis.ranking[0].parameters.items() if e.at_bound]
         if not ends or diagnosis.ranking[0].p_value < diagnosis.rules.rejected_fit:
             return nothing
-        return f"the gap is real; {first} fits, at the end of what is believed of it: {', '.join(ends)}"
+        return f"the gap is real; {first} fits only at an end of its plausible range: {', '.join(ends)}"
     if diagnosis.lacks == "closing":
-        return f"the gap is real; {first} comes nearest, closes too little of it and leaves more than noise"
+        return (
+            f"the gap is real; {first} fits best, but closes too little of the gap and leaves more than noise"
+        )
     if diagnosis.lacks == "one size":
-        return f"the gap is real; {first} comes nearest, and parts of the data want another size of it each"
+        return f"the gap is real; {first} fits best, but parts of the data require different sizes of it"
     if diagnosis.lacks == "library":
-        return f"the gap is real; {first} comes nearest, and {_of_no_library(diagnosis.something_else)}"
+        return f"the gap is real; {first} fits best, but {_of_no_library(diagnosis.something_else)}"
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
     return (
-        f"{first} would explain the gap, and is not {odds} as that tolerances or noise are worse than stated"
+        f"{first} would explain the gap, but is not {odds} as tolerances or noise that are worse than stated"
     )
 
 
 def _of_no_library(other: SomethingElse | None) -> str:
-    """Say how likely a cause is that no library has, and what it would change."""
+    """State how likely a cause is that no library has, and what it would change."""
     if other is None:
-        return "a cause that is in no library may as well be it"
+        return "a cause that is not in the library is as likely"
     would = f": {', '.join(map(str, other.changes[:3]))}" if other.changes else ""
-    return f"a cause that is in no library has {probability(other.probability)}{would}"
+    return f"a cause that is not in the library has a probability of {probability(other.probability)}{would}"
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
@@ -117,7 +122,7 @@ def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
 
 
 def _twin(diagnosis: Diagnosis) -> Twin | None:
-    """Return what is said of a class whose two members make one and the same change, or None."""
+    """Return the text on a class whose two members make one and the same change, or None."""
     if any(len(names) > 1 for names in diagnosis.sets):
         return None
     return twin_of(frozenset(diagnosis.effects))
@@ -147,11 +152,7 @@ def _values(diagnosis: Diagnosis) -> str:
         whose = f"{effect} " if several else ""
         stated.append(f"{whose}{bare} {estimate}" + (", the end of its range" if estimate.at_bound else ""))
     text = f"({'; '.join(stated[:SHOWN])}; 95 % in brackets)" if stated else ""
-    return (
-        text
-        if row.plausible
-        else f"{text} That size is hardly believable: look for another cause, too.".strip()
-    )
+    return text if row.plausible else f"{text} This size is implausible: consider other causes, too.".strip()
 
 
 def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
@@ -182,7 +183,7 @@ def _alike(row: Ranked, index: int) -> tuple[str, ...]:
 
 
 def _elsewhere(diagnosis: Diagnosis) -> str:
-    """Say where else an effect of a named set may be; nothing where it may be in one place only."""
+    """State where else an effect of a named set may be; nothing where it may be in one place only."""
     row = _row(diagnosis, diagnosis.sets[0])
     places = [] if row is None else [_alike(row, i) for i in range(len(row.effects))]
     return " ".join(
@@ -195,11 +196,11 @@ def _elsewhere(diagnosis: Diagnosis) -> str:
 def _where(diagnosis: Diagnosis) -> str:
     where = diagnosis.where
     if diagnosis.verdict == "none" and _odd(diagnosis):
-        return "nowhere else: every other datum agrees"
+        return "nowhere else: all other data agree"
     if diagnosis.suspected:
-        return "nowhere that is sure"
+        return "no place is certain"
     if diagnosis.verdict == "none" or where.channel == "none":
-        return "nowhere: every channel agrees"
+        return "nowhere: all channels agree"
     if diagnosis.verdict == "unknown":
         band = f"{where.band} " if where.band else ""
         return f"{band}The {where.channel} is where the best-fitting (rejected) explanations act; do not trust it."
@@ -249,7 +250,10 @@ def _closes(diagnosis: Diagnosis) -> str:
     who = "with the best-fitting (rejected) explanation, " if diagnosis.verdict == "unknown" else ""
     text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
     if not math.isfinite(shrink.held_after):
-        return f"{text} (noise floor {say(shrink.floor)}); with one mode none can be held out, so that proves nothing"
+        return (
+            f"{text} (noise floor {say(shrink.floor)}); with a single mode none can be held out, so "
+            "this proves nothing"
+        )
     text += f", {say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
     others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
     if shrink.held_runner_up is not None:
@@ -258,13 +262,13 @@ def _closes(diagnosis: Diagnosis) -> str:
     if shrink.points is not None:
         text += f"; on points held out {percent(shrink.points.before)} -> {percent(shrink.points.after)}"
     if shrink.closed is not None and diagnosis.verdict != "unknown":
-        share = f"closes {shrink.closed} of what can be closed"
+        share = f"closes {shrink.closed} of the reducible gap"
         text += f"; {share if shrink.closed.determined else UNDETERMINED}"
     return text + _left(diagnosis)
 
 
 def _odd(diagnosis: Diagnosis) -> str:
-    """Say which data were taken to be worse than stated, and by how much; nothing where none were."""
+    """State which data were taken to be worse than stated, and by how much; nothing where none were."""
     left = diagnosis.remainder
     if left is None or not left.significant:
         return ""
@@ -272,62 +276,67 @@ def _odd(diagnosis: Diagnosis) -> str:
 
 
 def _left(diagnosis: Diagnosis) -> str:
-    """Say what the answer leaves beyond noise, and where; nothing where it leaves nothing, or is none."""
+    """State what the answer leaves beyond noise, and where; nothing where it leaves nothing, or is none."""
     left = diagnosis.remainder
     if left is None or not left.significant or diagnosis.verdict in ("unknown", "none"):
         return ""
     where = ", ".join(left.carried_by[:SHOWN]) or "all data together"
-    return f"; what it leaves is more than noise, {left.sigma:.0f} sigma ({where}), and unexplained"
+    return f"; it leaves more than noise, {left.sigma:.0f} sigma ({where}), unexplained"
 
 
 def _stretched(shrink: Shrink) -> str:
     if shrink.stretch <= BELIEVED_DOUBT:
         return ""
-    needed = f"to explain it they would have to be {shrink.stretch:.0f} sigma off"
-    return f" (kept within {BELIEVED_DOUBT:g} sigma; {needed})"
+    needed = f"to explain the gap they would have to be off by {shrink.stretch:.0f} sigma"
+    return f" (limited to {BELIEVED_DOUBT:g} sigma; {needed})"
 
 
-UNDETERMINED = "the share that this closes is not determined (95 % interval from nothing to all)"
-"""In place of a share whose interval says nothing."""
+UNDETERMINED = "the share of the gap that it closes is not determined (95 % interval: 0 to 100 %)"
+"""In place of a share whose interval is not informative."""
 
 UNREMARKABLE = 0.05
-"""Chance of a gap from which its size says nothing [-]: of one point, say, among many that agree. Doubled, hardly any
+"""Chance of a gap from which its size is no evidence [-]: of one point, say, among many that agree. Doubled, hardly any
 answer is worded otherwise."""
 
 
 def _sure(diagnosis: Diagnosis) -> str:
-    chance = f"chance alone makes such a gap with {p_value(diagnosis.p_value)}"
+    chance = f"without any cause, such a gap has {p_value(diagnosis.p_value)}"
     if diagnosis.verdict == "none":
         return chance
     if diagnosis.p_value >= UNREMARKABLE:
-        chance += ", so that not its size but its pattern tells"
+        chance += ", so the evidence is its pattern, not its size"
     if diagnosis.verdict == "unknown":
         return chance + _left_out(diagnosis)
     chosen = [row for row in diagnosis.ranking if row.effects in diagnosis.sets]
     total, fit = sum(row.probability for row in chosen), max(row.p_value for row in chosen)
     rest = [row for row in diagnosis.ranking if row.effects not in diagnosis.sets]
     behind = f"; next {' + '.join(rest[0].effects)} {probability(rest[0].probability)}" if rest else ""
-    what = "all else fits" if _left(diagnosis) else "fits"
+    what = "all other data fit" if _left(diagnosis) else "fits"
     fits = f"{what} within the noise" if fit >= 0.05 else "fits, but not well"
     together = f"{probability(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
     return f"{together}{behind}; {fits} ({p_value(fit)}); {chance}"
 
 
 def _left_out(diagnosis: Diagnosis) -> str:
-    """Say how many effects the data did not allow to examine: one of them may be it."""
+    """State how many effects the data did not allow to examine: one of them may be it."""
     lacking = [why for why in diagnosis.not_examined.values() if why.lack is Lack.DATA]
     if not lacking:
         return ""
-    return f"; {len(lacking)} effect{'s' * (len(lacking) > 1)} could not be examined for want of data (listed below)"
+    return (
+        f"; {len(lacking)} effect{'s' * (len(lacking) > 1)} could not be examined because data are "
+        "missing (listed below)"
+    )
 
 
 def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and _odd(diagnosis):
-        return "measure again what stands alone: points and signs there may be mistaken"
+        return "repeat the deviating measurements: their points or signs may be wrong"
     if diagnosis.verdict == "none" and not diagnosis.comparable:
-        return "see first why most modes have no partner in the model: points, signs, axes, units, clamps"
+        return (
+            "first find out why most modes have no partner in the model: points, signs, axes, units, clamps"
+        )
     if diagnosis.suspected:
-        return "test again, with more hits and points and narrower tolerances, if it matters"
+        return "if it matters, test again with more hits, more points and narrower tolerances"
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
     if diagnosis.verdict == "class" and (twin := _twin(diagnosis)):
@@ -344,7 +353,10 @@ def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "named":
         return f"no rival is left to separate; to confirm: {ways}"
     if diagnosis.verdict == "unknown":
-        return "look at the modes that miss most below; more points there, and a test of the bare specimen"
+        return (
+            "examine the modes that deviate most (below); measure more points there, and test the bare "
+            "specimen"
+        )
     return ways
 
 
@@ -353,8 +365,8 @@ def _confirming(diagnosis: Diagnosis, test: NextTest) -> str:
     bar = diagnosis.rules.separated_sigma
     if test.expected_sigma < bar:
         return (
-            f"no test that was weighed would confirm it, by {bar:g} sigma; nearest to it comes this: "
-            f"{test.measure}: {separated(test)}"
+            f"no available test would confirm it by {bar:g} sigma; the best is: {test.measure}: "
+            f"{separated(test)}"
         )
     sentence = f"to confirm it, {test.measure}: {separated(test)}"
     named = diagnosis.sets[0]
@@ -370,31 +382,31 @@ SIZES = {1: "single causes", 2: "pairs", 3: "sets of three", 4: "sets of four"}
 
 
 def of_no_library_text(diagnosis: Diagnosis) -> str:
-    """Say how likely a cause is that is in no library, and whether the first set leaves room for one."""
+    """State how likely a cause is that is in no library, and whether the first set leaves room for one."""
     other = diagnosis.something_else
     if other is None or not diagnosis.ranking:
         return ""
     first = " + ".join(diagnosis.ranking[0].effects)
-    leaves = "something" if other.beside > diagnosis.rules.something_left else "nothing"
+    evidence = "evidence" if other.beside > diagnosis.rules.something_left else "no evidence"
     return (
-        f"a cause in no library: {probability(other.probability)}; {first} leaves {leaves} for one (logarithm of the "
-        f"Bayes factor {other.beside:+.1f})"
+        f"a cause outside the library: {probability(other.probability)}; {evidence} for one besides {first} "
+        f"(logarithm of the Bayes factor {other.beside:+.1f})"
     )
 
 
 def searched_text(diagnosis: Diagnosis) -> str:
-    """Say how many of the possible sets of causes were searched."""
+    """State how many of the possible sets of causes were searched."""
     parts = [
         f"{'all' if one.sets == one.possible else f'{one.sets} of'} {one.possible} {SIZES[one.causes]}"
         for one in diagnosis.searched
     ]
     if all(one.sets == one.possible for one in diagnosis.searched):
         return ", ".join(parts)
-    return f"{', '.join(parts)}, those that score tests find the most promising; the others are not ruled out"
+    return f"{', '.join(parts)}, selected by a score test; the others are not ruled out"
 
 
 def separated(test: NextTest) -> str:
-    """Say what a test separates, and how well."""
+    """State what a test separates, and how well."""
     what = separates(test)
     if not what:
         return ""
@@ -403,7 +415,7 @@ def separated(test: NextTest) -> str:
 
 
 def separates(test: NextTest) -> str:
-    """Say what a test separates: ``E from density``; empty where it is mere advice."""
+    """State what a test separates: ``E from density``; empty where it is mere advice."""
     if not test.pairs:
         return " from ".join(test.separates)
     firsts = list(dict.fromkeys(a for a, _ in test.pairs))

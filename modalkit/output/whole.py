@@ -57,7 +57,7 @@ def write_json(path: Path, content: Mapping[str, object]) -> None:
 
 
 def plain(value: Any) -> Any:
-    """Take numpy values, tuples and what is not finite to what JSON knows."""
+    """Take numpy values, tuples and what is not finite to what JSON allows."""
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

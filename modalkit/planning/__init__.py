@@ -1,4 +1,4 @@
-"""Plan a test before it is made, or look back at one: what it tells apart, and which change of it buys most."""
+"""Plan a test before it is made, or look back at one: which effects it separates, and which change of it gains most."""
 
 from modalkit.planning.bench import Bench
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast, forecast

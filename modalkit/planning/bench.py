@@ -29,7 +29,7 @@ class Bench(Protocol):
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What the study says and the forecast does not know of."""
+        """What the study states and the forecast does not use."""
 
     @property
     def not_forecast(self) -> Mapping[str, str]:
@@ -56,7 +56,7 @@ class Bench(Protocol):
         """Give all changes of the test that are worth a look."""
 
     def follows(self, change: Change) -> bool:
-        """Tell whether a trial can follow a change of the test."""
+        """Return whether a trial can follow a change of the test."""
 
     def right(self, case: Case) -> frozenset[str]:
         """Return the names that are right answers to a case."""

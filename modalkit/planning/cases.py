@@ -14,7 +14,7 @@ from modalkit.planning.separability import NONE, SURE, Distances, at_severity, c
 def choose(
     now: DesignForecast, advice: Advice | None, count: int, rng: np.random.Generator
 ) -> tuple[Case, ...]:
-    """Return cases about the thresholds: half are effects that the advice newly tells apart, then others in turn.
+    """Return cases about the thresholds: half are effects that the advice newly separates, then others in turn.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def _found(evaluation: DesignForecast, name: str) -> Distances:
 
 
 def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
-    """Take the severity from which on the effect is surely told once the advice is followed."""
+    """Take the severity from which on the effect is surely separated once the advice is followed."""
     family = now.curve.family
     place, sign = int(rng.integers(len(now.places))), float(rng.choice([-1.0, 1.0]))
     side = np.flatnonzero(sign * family.grid > 0) if family.low < 0 else np.flatnonzero(family.grid > 0)

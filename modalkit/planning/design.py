@@ -18,7 +18,7 @@ class Design:
     calibration, repeatability : float
         Relative standard deviations of level and of frequencies at re-mounting [-].
     noise : float
-        Standard deviations of the identification over those told [-].
+        Standard deviations of the identification over those stated [-].
     position_sigma : float
         Of the hammer's points [m].
     tolerances : tuple of float
@@ -26,7 +26,7 @@ class Design:
     damping : float
         Doubt in the damping expected, relative [-].
     damping_known, shapes : bool
-        Whether damping and modal constants tell anything.
+        Whether damping and modal constants are informative.
     absolute : bool
         Whether constants have an absolute level.
     baseline : bool

@@ -22,7 +22,7 @@ def to_json(found: Forecast) -> PlanDocument:
     Returns
     -------
     dict
-        ``null`` stands for a severity that is never told.
+        ``null`` stands for a severity that is never separated.
     """
     return {
         "schema": "modalkit.plan/1",
@@ -61,7 +61,7 @@ def _advice(one: Advice) -> AdviceEntry:
 
 
 def statement(evaluation: DesignForecast, name: str, q: float) -> str | None:
-    """Return a severity in words; None where there is none that is told."""
+    """Return a severity in words; None where none is separated."""
     return family_of(evaluation, name).say(q) if math.isfinite(q) else None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 NOT_FORECAST = {
     "polarity": "a reversed sign stands out in every test with three points or more",
-    "swapped_points": "as a point far from where it is said to be",
+    "swapped_points": "as a point far from its stated place",
     "time_delay": "it turns the constants and nothing else does: seen from some 0.01 rad on",
     "absorber": "it makes a mode of its own, which no other effect does: seen wherever that lies in the band",
     "drift": "it shows in how points differ in measuring order: seen from twice what a laboratory and re-mounting do",

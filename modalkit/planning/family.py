@@ -1,4 +1,4 @@
-"""An effect at all its severities and places: what is varied, how far, and how it is said."""
+"""An effect at all its severities and places: what is varied, how far, and how it is worded."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Family:
     clear : float
         Size of ``q`` that is asked about: a clear case [SI].
     words : str
-        What a severity is said of: 'a sensor heavier than stated by'.
+        What a severity refers to: 'a sensor heavier than stated by'.
     amount : callable
         ``amount(q)`` is the severity in physical units, as text that continues the words.
     places : (n,) array
@@ -114,7 +114,7 @@ def factor(name: str, noun: str, *, most: float, clear: float) -> Family:
     Parameters
     ----------
     name, noun : str
-        The effect, and how its severity is said.
+        The effect, and the wording of its severity.
     most : float
         Largest factor [-].
     clear : float

@@ -1,4 +1,4 @@
-"""The forecast of a test: what it tells apart, from what severity on, and which change of it buys most."""
+"""The forecast of a test: which effects it separates, from what severity on, and which change of it gains most."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Limit:
     Parameters
     ----------
     seen, separated, sure : float
-        Severity from which it is seen, told from all others by 3 sigma, and by 5; infinite for never [SI].
+        Severity from which it is seen, separated from all others by 3 sigma, and by 5; infinite for never [SI].
     clear : float
         Severity that is asked about [SI].
     nearest : str
@@ -47,7 +47,7 @@ class Limit:
 
 
 Kind = Literal["named", "place", "edge", "class", "unseen"]
-"""Told from all others surely; but for itself elsewhere; by less; not told from some; not told from nothing."""
+"""Separated from all surely; except from itself elsewhere; by less; not separated from some; not from no effect."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Outcome:
     kind : str
         ``named``; named with its ``place`` in doubt; on the ``edge`` of it; in a ``class`` with others; or ``unseen``.
     rivals : tuple of str
-        Those from which it is not told, or hardly, the nearest first.
+        Those from which it is not separated, or hardly, the nearest first.
     """
 
     kind: Kind
@@ -68,7 +68,7 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class DesignForecast:
-    """What one test tells.
+    """What one test separates.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class DesignForecast:
 
     @cached_property
     def limits(self) -> dict[str, Limit]:
-        """From what severity on each effect is seen, and told from all others, by name."""
+        """From what severity on each effect is seen, and separated from all others, by name."""
         return {one.curve.family.name: _limit(one) for one in self.found}
 
     @property
@@ -156,7 +156,7 @@ class DesignForecast:
 
     @property
     def worth(self) -> float:
-        """Share of pairs told, and beside it how low thresholds are on a logarithmic scale, as one number [-]."""
+        """Share of pairs separated, and beside it how low thresholds are on a logarithmic scale, as one number [-]."""
         table = self.thresholds
         depth = np.log(np.clip(table["clear"] / table["separated"], 1 / _CAP, _CAP))
         near = np.clip(list(self.pairs.values()), 0.1, SEEN) / SEEN
@@ -206,11 +206,11 @@ class Advice:
     after : DesignForecast
         The test then.
     separates : tuple of (str, str)
-        Pairs told apart then and not before; ``none`` stands for an effect that becomes visible.
+        Pairs separated then and not before; ``none`` stands for an effect that becomes visible.
     factor : float
-        How many times smaller the severities told become, geometric mean [-].
+        How many times smaller the severities it separates become, geometric mean [-].
     worth : float
-        Growth of the share of pairs told, of thresholds and of small separations, as one number [-].
+        Growth of the share of pairs separated, of thresholds and of small separations, as one number [-].
     """
 
     change: Change
@@ -222,7 +222,7 @@ class Advice:
 
 @dataclass(frozen=True, eq=False)
 class Forecast:
-    """All that a plan of a test says.
+    """The complete plan of a test.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ class Forecast:
 
 
 def forecast(bench: Bench, *, progress: Callable[[str], None] | None = None) -> Forecast:
-    """Forecast what a test tells apart.
+    """Forecast which effects a test separates.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def forecast(bench: Bench, *, progress: Callable[[str], None] | None = None) -> 
     Returns
     -------
     Forecast
-        What it tells apart now, and what each change would bring.
+        What it separates now, and what each change would bring.
     """
     with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
         return _forecast(bench, progress or (lambda _: None))

@@ -9,11 +9,11 @@ from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
 _LINES = 4
 
 LARGER = 0.995
-"""Below it a change makes the severities told larger, by more than the digits shown [-]."""
+"""Below it a change makes the separable severities larger, by more than the digits shown [-]."""
 
 
 def followed(found: Forecast) -> bool:
-    """Tell whether there is a change worth the trouble."""
+    """Return whether there is a change worth the trouble."""
     return bool(found.advice) and found.advice[0].worth > 0
 
 
@@ -23,8 +23,10 @@ def offered(found: Forecast) -> list[Advice]:
 
 
 def brings(one: Advice) -> str:
-    """Return what a change newly separates, and that severities told grow where they do; empty for neither."""
-    larger = f"severities told become {1 / one.factor:.2f} times larger" if one.factor < LARGER else ""
+    """Return what a change newly separates, and that the separable severities grow where they do; empty for neither."""
+    larger = (
+        f"the severities it separates become {1 / one.factor:.2f} times larger" if one.factor < LARGER else ""
+    )
     return "; ".join(filter(None, (some(separated(one.separates)), larger)))
 
 
@@ -35,14 +37,17 @@ def note(found: Forecast) -> list[str]:
     if followed(found):
         lines.append(_best(found.advice[0]))
     else:
-        lines.append("Advice:  no single change that was tried buys anything worth the trouble.")
+        lines.append("Advice:  no single change that was tried is worth the effort.")
     return lines
 
 
 def _separates(now: DesignForecast) -> str:
     pairs = list(now.shown_pairs.values())
     separately = sum(value >= SEEN for value in pairs)
-    return f"Tells:   {separately} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
+    return (
+        f"Pairs:   {separately} of {len(pairs)} pairs of effects are separated, each effect as strong "
+        "as asked about below."
+    )
 
 
 def _names(now: DesignForecast) -> str:
@@ -50,14 +55,18 @@ def _names(now: DesignForecast) -> str:
     edge, place = kinds.count("edge"), kinds.count("place")
     more = f", {edge} more on the edge ({SEEN:g} to {SURE:g} sigma)" if edge else ""
     more += f", {place} more with their place in doubt" if place else ""
-    return f"Names:   {kinds.count('named')} of {len(kinds)} effects surely ({SURE:g} sigma from all others){more}."
+    return (
+        f"Named:   {kinds.count('named')} of {len(kinds)} effects surely ({SURE:g} sigma from all "
+        f"others){more}."
+    )
 
 
 def _cannot(now: DesignForecast) -> list[str]:
     lines, groups = [], [" = ".join(group) for group in now.classes]
     if groups:
         lines.append(
-            f"Cannot:  tell apart (under {CLASS:g} sigma, all doubts counted in) {some(groups, '; ', 'classes')}."
+            f"Alike:   not separated (under {CLASS:g} sigma, all uncertainties included): "
+            f"{some(groups, '; ', 'classes')}."
         )
     near = [
         f"{a} from {b} ({value:.1f} sigma)"
@@ -67,9 +76,7 @@ def _cannot(now: DesignForecast) -> list[str]:
     if near:
         lines.append(f"Hardly:  {some(near)}.")
     if now.unseen:
-        lines.append(
-            f"Blind:   {some(list(now.unseen), what='effects')} would be taken for no effect at all."
-        )
+        lines.append(f"Unseen:  {some(list(now.unseen), what='effects')} would be taken for no effect.")
     return lines
 
 
@@ -85,7 +92,7 @@ def separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
 
 
 def _from_when(now: DesignForecast) -> str:
-    """Return the effects that need to be largest, against what is asked about, to be told."""
+    """Return the effects that need to be largest, against what is asked about, to be separated."""
     seen = [name for name in now.limits if name not in now.unseen]
     hard = sorted(seen, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
     words = []
@@ -93,7 +100,7 @@ def _from_when(now: DesignForecast) -> str:
         limit = now.limits[name]
         never = f"{name} at no severity ({limit.nearest} does the same)"
         words.append(statement(now, name, limit.separated) or never)
-    return f"Late:    told from all others only from here on: {'; '.join(words)}."
+    return f"Late:    separated from all others only from these severities on: {'; '.join(words)}."
 
 
 def _best(best: Advice) -> str:
@@ -101,4 +108,4 @@ def _best(best: Advice) -> str:
     first = f"separates {newly}" if newly else "separates no further pair"
     less = best.factor >= LARGER
     times = f"{best.factor:.1f} times smaller" if less else f"{1 / best.factor:.1f} times larger"
-    return f"Advice:  {best.change.measure}: {first}; severities told become {times}."
+    return f"Advice:  {best.change.measure}: {first}; the severities it separates become {times}."

@@ -15,7 +15,7 @@ from modalkit.planning.surface import Surface
 
 NONE = "none"
 SEEN = 3.0
-"""Standard deviations from which on an effect is seen, or told from another."""
+"""Standard deviations from which on an effect is detected, or separated from another."""
 
 SURE = 5.0
 """Standard deviations from which on an effect is expected to be named alone."""
@@ -45,7 +45,7 @@ class Distances:
     curve : Curve
         The effect.
     places : (n_places,) array
-        Places that were looked at [m].
+        Places that were examined [m].
     rivals : tuple of str
         ``none`` first, then the other families.
     causes : tuple of str

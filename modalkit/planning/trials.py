@@ -79,8 +79,8 @@ class Tried:
         """The forecast in words."""
         rival = self.case.rival_then if self.followed else self.case.rival_now
         if self.sigma >= _LEAST:
-            return "told"
-        return f"on the edge to {rival}" if self.sigma >= SEEN else f"not told from {rival}"
+            return "separated"
+        return f"close to the limit from {rival}" if self.sigma >= SEEN else f"not separated from {rival}"
 
     def row(self) -> BlindCase:
         """Return a line of the table."""
@@ -138,7 +138,7 @@ class Check:
 
 def _counted(tried: Sequence[Tried]) -> str:
     """Return how many were named, by what was forecast of them."""
-    kinds = (("told", _LEAST, np.inf), ("on the edge", SEEN, _LEAST), ("not told", 0.0, SEEN))
+    kinds = (("separated", _LEAST, np.inf), ("on the edge", SEEN, _LEAST), ("not separated", 0.0, SEEN))
     words = []
     for kind, low, high in kinds:
         mine = [one for one in tried if low <= one.sigma < high]

@@ -69,8 +69,9 @@ def drawings(diagnosis: Diagnosis, sessions: Sequence[Session]) -> dict[str, Dra
     )
     found["shrink"] = Drawing(
         shrink_figure(diagnosis),
-        "The gap of the model as it stands, of its tolerances alone, of the runner-up and of the answer, each mode "
-        "predicted from all others (dots), and on the data that were fitted (ring). The shaded part is noise.",
+        "The gap of the unchanged model, of its tolerances alone, of the runner-up and of the answer, "
+        "each mode predicted from all others (dots), and on the data that were fitted (ring). The shaded "
+        "part is noise.",
     )
     return found
 
@@ -81,7 +82,7 @@ def _own(diagnosis: Diagnosis, session: Session, best: Fitted, several: bool) ->
     name = f"{title}: " if several else ""
     errors = mode_errors(diagnosis, session.case, best=best)
     shown = (
-        "Error of every mode of the model as it stands (rings)"
+        "Error of every mode of the unchanged model (rings)"
         if errors.after is None
         else "Error of every mode before (rings) and after the most probable explanation (dots)"
     )
@@ -97,7 +98,7 @@ def _own(diagnosis: Diagnosis, session: Session, best: Fitted, several: bool) ->
     frfs = session.identified.frfs
     found["frfs"] = Drawing(
         overlaid_figure(overlaid(frfs, best)),
-        f"{name}Measured FRFs, those of the model as it stands (before), and those of the model with the most "
+        f"{name}Measured FRFs, those of the unchanged model (before), and those of the model with the most "
         "probable explanation and tolerances in it (after).",
     )
     found["frf"] = Drawing(

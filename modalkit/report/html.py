@@ -97,7 +97,7 @@ def table(
 
 
 def definitions(items: Mapping[str, str], *, class_: str = "") -> Raw:
-    """Return a list of terms and what is said of them."""
+    """Return a list of terms and their explanations."""
     pairs = [part for k, v in items.items() for part in (element("dt", k), element("dd", v))]
     return element("dl", *pairs, class_=class_)
 

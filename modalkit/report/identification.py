@@ -44,7 +44,7 @@ def identification_report(
     session : Session, optional
         The study with its model, which is drawn beside the shapes.
     warnings : sequence of str
-        What the user ought to know.
+        What the user should know.
     title : str
         Of the test.
     """

@@ -55,7 +55,7 @@ def _kind(part: Moving | Standing) -> str:
 
 
 def _contents(document: Document) -> Raw:
-    """Return links to the sections, and what is said where no script runs."""
+    """Return links to the sections, and the text where no script runs."""
     links = [element("li", element("a", s.title, href=f"#{_anchor(s)}")) for s in document.shown]
     quiet = element(
         "noscript", element("p", "The figures need scripts, which are switched off here; the tables do not.")

@@ -1,4 +1,4 @@
-"""The report of a plan: what a test tells apart, from what severity on, and what to change."""
+"""The report of a plan: which effects a test separates, from what severity on, and what to change."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def plan_report(
     study : Study
         The study.
     found : Forecast
-        What its test tells.
+        What its test separates.
     when : datetime
         Date of the report.
     command : str
@@ -47,11 +47,11 @@ def plan_report(
             "plan",
             joined(element("h1", study.name), _answer(found)),
             [
-                Section("What it tells apart", [separations_chart(found)]),
+                Section("What it separates", [separations_chart(found)]),
                 Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
-                Section("What a change buys", [changes_table(found)]),
+                Section("What a change gains", [changes_table(found)]),
                 Section(f"Blind trials on {found.bench.basis}", [_trials(checked)]),
-                Section("What was taken for granted", [bullets(list(found.bench.statement))]),
+                Section("What was assumed", [bullets(list(found.bench.statement))]),
                 Section("What the forecast leaves out", [_left_out(found)]),
                 Section("What this rests on", [provenance(Basis(when, command, [study]))]),
             ],
@@ -66,13 +66,13 @@ def _answer(found: Forecast) -> Raw:
     pairs = list(found.now.shown_pairs.values())
     separately = sum(value >= SEEN for value in pairs)
     share = (
-        f"{100 * separately / max(len(pairs), 1):.0f} % of the pairs of effects that are seen are told apart"
+        f"{100 * separately / max(len(pairs), 1):.0f} % of the pairs of effects that are seen are separated"
     )
     return joined(element("p", share, class_="answer"), definitions(stated, class_="letter"))
 
 
 def separations_chart(found: Forecast) -> Chart:
-    """Return how many standard deviations each effect is from each other, full colour where it is surely told."""
+    """Return how many standard deviations each effect is from each other, full colour where it is surely separated."""
     now = found.now
     names, columns = list(now.names), ["no effect", *now.names]
     sigma = now.matrix[[NONE, *names]].to_numpy(float)
@@ -94,14 +94,14 @@ def separations_chart(found: Forecast) -> Chart:
 
 
 def thresholds_chart(found: Forecast) -> Chart:
-    """Return from what share of the severity asked about each effect is told."""
+    """Return from what share of the severity asked about each effect is separated."""
     limits = found.now.limits
     names = sorted(limits, key=lambda n: limits[n].separated / limits[n].clear)
     shares = {n: (limits[n].seen / limits[n].clear, limits[n].separated / limits[n].clear) for n in names}
     rows = {n: i for i, n in enumerate(names)}
     series = []
     for k, (meaning, colour, hollow) in enumerate(
-        (("seen from", "ink", True), ("told from all others", "blue", False))
+        (("seen from", "ink", True), ("separated from all others", "blue", False))
     ):
         known = [n for n in names if math.isfinite(shares[n][k]) and shares[n][k] > 0]
         text = [f"{n}\n{meaning} {100 * shares[n][k]:.3g} % of what is asked about" for n in known]
@@ -112,8 +112,9 @@ def thresholds_chart(found: Forecast) -> Chart:
     early = sum(shares[n][1] <= 1 for n in names)
     return Chart(
         "thresholds",
-        f"{early} of {len(names)} effects are told from all others as strong as asked about, {never or 'none'} never",
-        "Ring: seen; dot: told from all others; dotted: as strong as asked about.",
+        f"{early} of {len(names)} effects are separated from all others as strong as asked about, "
+        f"{never or 'none'} never",
+        "Ring: seen; dot: separated from all others; dotted: as strong as asked about.",
         Axis("severity, of what is asked about [%]", log=True),
         Axis(names=tuple(names)),
         series,
@@ -124,7 +125,7 @@ def thresholds_chart(found: Forecast) -> Chart:
 def thresholds_table(document: PlanDocument) -> Raw:
     """Return the severities in words."""
     columns = [
-        Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")
+        Column(n) for n in ("effect", "seen from", "separated from", "surely from", "asked about", "nearest")
     ]
     columns += [Column("σ from it", lambda v: f"{v:.1f}"), Column("expected")]
     rows: list[list[Cell | Raw]] = [
@@ -150,7 +151,7 @@ def changes_table(found: Forecast) -> Raw:
         Column("change"),
         Column("newly separates"),
         Column("severities become smaller by", lambda v: f"{v:.2f}"),
-        Column("pairs told apart", lambda v: f"{100 * v:.0f} %"),
+        Column("pairs separated", lambda v: f"{100 * v:.0f} %"),
     ]
     rows: list[list[Cell | Raw]] = [
         [

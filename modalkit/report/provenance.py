@@ -84,7 +84,7 @@ def _files(caption: str, files: Sequence[tuple[str, Path]]) -> Raw:
 
 
 def _named(study: Study, path: Path) -> str:
-    """Return a file by its path from the study's folder, which is what the study says."""
+    """Return a file by its path from the study's folder, which is what the study states."""
     folder = study.path.parent
     return str(path.relative_to(folder)) if path.is_relative_to(folder) else path.name
 

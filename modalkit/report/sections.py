@@ -1,4 +1,4 @@
-"""What a report says, part by part: the gap, where it is, what causes it, how far it closes."""
+"""What a report states, part by part: the gap, where it is, what causes it, how far it closes."""
 
 from __future__ import annotations
 
@@ -42,8 +42,9 @@ def the_gap(diagnosis: Diagnosis) -> Raw:
     """Return the table of the modes, one for each study."""
     gap = diagnosis.gap
     words = (
-        f"Frequencies differ by {percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}. Chance "
-        f"alone, with the tolerances stated, makes a gap like this in all data with {p_value(diagnosis.p_value)}."
+        f"Frequencies differ by {percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}. "
+        "With the stated tolerances and without any cause, a gap like this in all data has "
+        f"{p_value(diagnosis.p_value)}."
     )
     studies = list(dict.fromkeys(gap.modes["study"]))
     tables = [_mode_table(gap.modes[gap.modes["study"] == name], name, len(studies) > 1) for name in studies]
@@ -66,8 +67,8 @@ def _mode_table(modes: pd.DataFrame, name: str, several: bool) -> Raw:
         for mode, row in modes.iterrows()
     ]
     statement = (
-        f"{f'{name}: modes' if several else 'Modes'} of the test and of the model as it stands. Error is model minus "
-        "test, over test; sigma is what the test is known to."
+        f"{f'{name}: modes' if several else 'Modes'} of the test and of the unchanged model. Error: model "
+        "minus test, relative to the test; sigma: uncertainty of the measured frequency."
     )
     return table(statement, columns, rows)
 
@@ -180,7 +181,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         Column("fits with p", bare_p),
         Column("verdict"),
         Column("parameters, with 95 % intervals", wide=True),
-        Column("not told apart from"),
+        Column("not separated from"),
     ]
     cells: list[list[Cell | Raw]] = [
         _explanation(
@@ -194,7 +195,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     marked = [r.effects in diagnosis.sets for r in shown]
     statement = {
         "named": "The shaded row is the answer.",
-        "class": "The shaded rows are the answer: one of them, these data cannot tell which.",
+        "class": "The shaded rows are the answer: one of them, these data cannot show which.",
         "unknown": "None of them explains the gap.",
         "none": "There is no gap that would need one of them.",
     }[diagnosis.verdict]
@@ -214,7 +215,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
 
 
 def _why(row: Ranked, diagnosis: Diagnosis) -> str:
-    """Say whether a row is the answer, and if not, why."""
+    """State whether a row is the answer, and if not, why."""
     if row.effects in diagnosis.sets:
         return "the answer" if len(diagnosis.sets) == 1 else "one of the answer"
     if row.p_value < diagnosis.rules.rejected_fit:
@@ -225,7 +226,7 @@ def _why(row: Ranked, diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         return "fits, but hardly better than a discrepancy without any effect"
     if not row.plausible:
-        return "rejected: fits at a size that is hardly believable"
+        return "rejected: fits at a size that is implausible"
     times = best / max(row.probability, 1e-300)
     much = f"{times:.{0 if times >= 10 else 1}f} times" if times < 1000 else "more than 1000 times"
     return f"fits, but is {much} less probable"
@@ -246,7 +247,7 @@ def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
         statement = name if len(row.effects) > 1 else name.partition(".")[2]
         stated.append(f"{statement} = {estimate}{bound}")
     if not row.plausible and not any(e.at_bound for e in row.parameters.values()):
-        stated.append("(hardly believable)")
+        stated.append("(implausible)")
     near = [" + ".join(names) for names in row.equivalents[:3]]
     if len(row.equivalents) > len(near):
         near.append(f"{len(row.equivalents) - len(near)} more")
@@ -269,7 +270,7 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
     """Return the gap before and after, on fitted and on held-out data."""
     shrink, metric = diagnosis.shrink, diagnosis.shrink.metric
     rows: list[list[Cell | Raw]] = [
-        ["the model as it stands", shrink.before, shrink.held_before],
+        ["the unchanged model", shrink.before, shrink.held_before],
         ["tolerances alone", None, shrink.held_nuisance],
     ]
     if shrink.held_runner_up is not None:
@@ -321,7 +322,7 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
 
 
 def _of_no_library(diagnosis: Diagnosis) -> list[Raw]:
-    """Return a paragraph on a cause that is in no library, none where it was not weighed."""
+    """Return a paragraph on a cause that is in no library, none where it was not examined."""
     text = of_no_library_text(diagnosis)
     return [element("p", text[:1].upper() + text[1:] + ".")] if text else []
 
@@ -338,21 +339,21 @@ def the_next_test(diagnosis: Diagnosis) -> Raw:
     columns = [Column("measure next"), Column("separates"), Column("by [σ], at least", lambda v: f"{v:.1f}")]
     if not any(row[1] for row in rows):
         return table("What would show more.", columns[:1], [row[:1] for row in rows])
-    return table("Tests that would separate what is left, the first first.", columns, rows)
+    return table("Tests that would separate the remaining causes, best first.", columns, rows)
 
 
 def not_examined(diagnosis: Diagnosis) -> Raw:
     """Return the effects that were left out, by the reason."""
     extent = element("p", f"Searched: {searched_text(diagnosis)}.")
     if not diagnosis.not_examined:
-        return joined(element("p", "Every effect of the library was weighed."), extent)
+        return joined(element("p", "Every effect of the library was examined."), extent)
     by_reason: dict[str, list[str]] = {}
     for name, why in diagnosis.not_examined.items():
         by_reason.setdefault(str(why), []).append(name)
     rows: list[list[Cell | Raw]] = [[", ".join(names), why] for why, names in by_reason.items()]
     words = "None of these is ruled out by the answer above."
     return joined(
-        table("Effects that could not be weighed, and why.", [Column("effects"), Column("why")], rows),
+        table("Effects that could not be examined, and why.", [Column("effects"), Column("why")], rows),
         element("p", words),
         extent,
     )

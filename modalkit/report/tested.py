@@ -123,7 +123,7 @@ def hits_table(hits: Sequence[HitVerdict]) -> Raw:
         [str(h.point), h.hit, "used" if h.used else "left out", "; ".join(h.reasons), h.peak, h.band20]
         for h in hits
     ]
-    shown = table("What is thought of every hit.", columns, rows)
+    shown = table("Verdict on every hit.", columns, rows)
     return folded(f"All {len(hits)} verdicts", shown)
 
 
@@ -146,7 +146,7 @@ def shapes_section(
     whose: str = "",
     changed: Sequence[Changed] = (),
 ) -> Section:
-    """Return the shapes in motion, test beside model as it stands and as it became, and the MAC between them."""
+    """Return the shapes in motion, test beside unchanged model and as it became, and the MAC between them."""
     mark, title = "" if number == 1 else f"-{number}", f"Shapes in motion{whose}"
     if modal is None or modal.shapes is None:
         return Section(title)
@@ -172,7 +172,7 @@ def _moving(modal: ModalData, both: bool) -> str:
 
 def _turn(placed: bool) -> str:
     lines = "Lines are the test's own; surfaces stand only where these close one. "
-    return (lines if placed else "") + "Drag to turn, or use the arrow keys; plus and minus bring it near."
+    return (lines if placed else "") + "Drag to turn, or use the arrow keys; plus and minus zoom."
 
 
 def _beside(session: Session | None) -> tuple[Beside | None, str]:
@@ -197,5 +197,5 @@ def mac_chart(beside: Beside, name: str = "mac") -> Chart | None:
     pairs = beside.correlation.table
     least = pairs["MAC"].min()
     title = f"{counted(len(pairs), 'pair')} of test and model, the least alike with a MAC of {least:.2f}"
-    text = "MAC of every measured mode with every mode of the model as it stands, in hundredths."
+    text = "MAC of every measured mode with every mode of the unchanged model, in hundredths."
     return matrix_chart(name, title, text, matrix.to_numpy(float), rows, columns, axes=("test", "model"))

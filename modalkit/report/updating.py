@@ -139,7 +139,7 @@ def pairs_table(result: Update) -> Raw:
 
 
 def _several(result: Update) -> bool:
-    """Tell whether several studies were updated together; of one alone no table names it."""
+    """Return whether several studies were updated together; of one alone no table names it."""
     return result.pairs["study"].nunique() > 1
 
 

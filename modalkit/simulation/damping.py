@@ -33,7 +33,7 @@ def damped_spec(study: Study, session: Session | None) -> tuple[Spec, tuple[str,
         return with_ratios(Predictor(spec, predictor.measured), ratios).spec, (
             "damping: the identified ratios, their median where no mode was identified",
         )
-    statement = f"damping: neither model nor test says any; {100 * UNKNOWN_DAMPING:g} % for every mode"
+    statement = f"damping: neither model nor test states any; {100 * UNKNOWN_DAMPING:g} % for every mode"
     return with_ratios(Predictor(spec, predictor.measured), np.array([UNKNOWN_DAMPING])).spec, (statement,)
 
 
@@ -41,5 +41,5 @@ def _ratios(predictor: Predictor) -> FloatArray | None:
     prediction = predictor.predict()
     try:
         return identified_ratios(pair_modes(predictor.measured, prediction), prediction)
-    except EstimationError:  # a test that is nothing like the model still says how to hit it
+    except EstimationError:  # a test unlike the model still defines how to hit it
         return None

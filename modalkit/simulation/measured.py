@@ -1,4 +1,4 @@
-"""The rig of a study that has hits or FRFs, as far as these tell."""
+"""The rig of a study that has hits or FRFs, as far as these determine them."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def _force_noise(session: Session) -> float:
 
 
 def _with_noise(plan: HammerPlan, frfs: FrfSet, options: Options, notes: list[str]) -> HammerPlan:
-    """Return the plan with the noise of the responses: as told, else as the coherence has it, else usual."""
+    """Return the plan with the noise of the responses: as stated, else from the coherence, else usual."""
     if options.noise is not None:
         return replace(plan, response_noise=options.noise)
     if frfs.coherence is None or (frfs.averages is not None and frfs.averages.min() < 2):

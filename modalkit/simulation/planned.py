@@ -29,7 +29,7 @@ from updating.simulation import natural_modes, simulated
 from updating.test_data.axes import Axes
 
 LOWEST_BAND, MODES = 0.2, 5
-"""Where nothing says the band: from a part of the first frequency to a little above the fifth."""
+"""Where no band is stated: from a part of the first frequency to a little above the fifth."""
 
 DECAYED, LONGEST = 6.0, 65536
 """Records last until the slowest mode has decayed by this exponent, in no more samples [-]."""
@@ -38,7 +38,7 @@ DECAYED, LONGEST = 6.0, 65536
 def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: Options) -> MeasurementSetup:
     """Return a rig for a study without hits: at the points of its shapes if any, else at evenly spaced ones.
 
-    The sensor sits where the modeller knows of a mass, else at the point where the faintest mode of the band is
+    The sensor sits where the modeller stated a mass, else at the point where the faintest mode of the band is
     strongest; the band is the study's, else that of the modes measured, else of the model's first five.
 
     Parameters
@@ -50,7 +50,7 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     measured : Measured, optional
         Its modal data.
     options : Options
-        What the user says.
+        What the user states.
     """
     axes, notes = study.axes(study.test), []
     planned = planned_points(study, spec) if measured is None else None
@@ -96,7 +96,7 @@ def _blank(
     sensor: int,
     hit: Sequence[int] | None = None,
 ) -> Measured:
-    """Return a test without modes: every point, or some, is hit, one is looked at."""
+    """Return a test without modes: every point, or some, is hit, one is observed."""
     chosen = np.arange(len(points)) if hit is None else np.array(hit)
     n, none = len(chosen), np.zeros(0)
     return Measured(
@@ -115,7 +115,8 @@ def spaced(spec: Spec, count: int | None) -> FloatArray:
     """
     if not spec.outlined:
         raise StudyError(
-            "imported matrices do not say where to hit: give [test] files with points, shapes, or [test] points"
+            "imported matrices do not state where to hit: give [test] files with points, shapes, or "
+            "[test] points"
         )
     if count is not None and count < 2:
         raise StudyError(f"--points {count}: give at least 2")

@@ -1,4 +1,4 @@
-"""What a simulated test is told, and what it comes to: points, hits, records and noise."""
+"""What is stated of a simulated test, and the resulting setup: points, hits, records and noise."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TRIGGER = 0.02
 
 @dataclass(frozen=True)
 class Options:
-    """What the user says of the simulated test in place of the study's own; None leaves it.
+    """What the user states about the simulated test in place of the study's own; None leaves it.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Options:
     noise : float, optional
         Noise of each response record, r.m.s. relative to its largest magnitude [-].
     points : int, optional
-        How many points, where the study's data do not say which.
+        How many points, where the study's data do not state which.
     remount : bool
         Whether the structure is mounted anew and the chain calibrated anew: frequencies scatter by the study's
         ``repeatability``, the level by its ``calibration``.
@@ -59,7 +59,7 @@ class MeasurementSetup(Displayed):
     Parameters
     ----------
     measured : Measured
-        Points in model axes, and which of them is hit and which is looked at in every FRF.
+        Points in model axes, and which of them is hit and which is observed in every FRF.
     responses, references : tuples of Dof, length n_frf
         What the test calls them.
     signs : (n_frf,) array
@@ -67,7 +67,7 @@ class MeasurementSetup(Displayed):
     geometry : Geometry
         Nodes in test coordinates.
     band : tuple of float
-        What is looked at [Hz].
+        Band examined [Hz].
     plan : HammerPlan
         How it is hit.
     notes : tuple of str

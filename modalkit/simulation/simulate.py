@@ -46,7 +46,7 @@ class SimulatedTest(Displayed):
     poles : (n_modes,) complex array
         Poles in the band as a test without noise would find them: unknown windows included [rad/s].
     notes : tuple of str
-        What was not the study's, and what the user ought to know.
+        What was not the study's, and what the user should know.
     """
 
     title: str
@@ -103,7 +103,7 @@ class Prepared(Displayed):
     test_setup : MeasurementSetup
         How it is hit.
     options : Options
-        What the user said in place of the study.
+        What the user stated in place of the study.
     notes : tuple of str
         What was not the study's.
     """
@@ -121,10 +121,10 @@ def prepare(study: Study, options: Options | None = None) -> Prepared:
     Parameters
     ----------
     study : Study
-        Where its test has hits or FRFs, these say points, directions, band, hits, records, window and noise; its
+        Where its test has hits or FRFs, these determine points, directions, band, hits, records, window and noise; its
         baseline is left aside.
     options : Options, optional
-        What the user says in place of the study.
+        What the user states in place of the study.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def simulate_test(
     seed : int
         Seed of all scatter and noise.
     options : Options, optional
-        What the user says in place of the study; a prepared one has its own.
+        What the user states in place of the study; a prepared one has its own.
 
     Raises
     ------
@@ -218,7 +218,7 @@ def _rig(study: Study, spec: Spec, session: Session | None, options: Options) ->
     if session is not None and session.processed is not None:
         if options.points is not None:
             raise InputError(
-                f"--points {options.points}: the study's own test says which points; leave it out"
+                f"--points {options.points}: the study's own test states which points; leave it out"
             )
         return rig_of_data(session, options)
     return rig_of_model(study, spec, None if session is None else session.case.measured, options)

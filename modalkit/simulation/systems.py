@@ -120,6 +120,6 @@ def known_sensors(study: Study, test_setup: MeasurementSetup) -> list[Callable[[
 def _carrying(test_setup: MeasurementSetup, name: str, mass: float) -> Callable[[Predictor], State]:
     node = Dof.of(name).node
     if node not in test_setup.measured.nodes:
-        raise StudyError(f"[test] sensor_masses: {name} is no point of the test")
+        raise StudyError(f"[test] sensor_masses: {name} is not a point of the test")
     place = test_setup.measured.points[[test_setup.measured.nodes.index(node)]]
     return lambda predictor: State(mass=(mass * predictor.reduced.unit_mass(place),))

@@ -270,7 +270,7 @@ def measure(scene: Scene, *, rng: np.random.Generator) -> HammerTest:
     Returns
     -------
     HammerTest
-        Its ``decay`` is the stated one, since the record itself does not know better.
+        Its ``decay`` is the stated one, since the record itself has no better value.
     """
     setup = scene.setup
     mount, conduct, hit, faults = rng.spawn(4)

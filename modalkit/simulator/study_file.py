@@ -27,7 +27,7 @@ def study_text(
         Names of the test files, relative to the study: of hits, or, as ``.csv``, of modes; the second is used where
         there is a baseline.
     expects_damping : bool
-        Whether the study says what damping the modeller expects.
+        Whether the study states what damping the modeller expects.
     model : mapping, optional
         The study's ``[model]`` of a specimen whose matrices are files.
 

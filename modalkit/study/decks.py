@@ -1,4 +1,4 @@
-"""``[model] type = "calculix"``: a deck, what the study says of its regions, and the specification that they make."""
+"""``[model] type = "calculix"``: a deck, its regions as the study states them, and the specification."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 OF_MATRICES = (
     "stiffness", "mass_matrix", "stiffness_name", "mass_name", "stiffness_parts", "mass_parts", "nodes", "material",
 )  # fmt: skip
-"""Keys that matrices have and a deck says itself."""
+"""Keys that matrices have and a deck states itself."""
 
 OWN = ("E", "density", "thickness", "area", "inertia", "x", "y")
 """Keys of a region that its elements say."""
@@ -40,7 +40,7 @@ def deck_of(model: ModelTable, file: Callable[[str], Path]) -> DeckModel:
         If a key is missing or does not belong there, or the deck cannot be read.
     """
     if foreign := [key for key in (*FOREIGN, *OF_MATRICES) if getattr(model, key)]:
-        raise StudyError(f"[model] of type calculix takes no {', '.join(foreign)}: the deck says it")
+        raise StudyError(f"[model] of type calculix takes no {', '.join(foreign)}: the deck states it")
     if model.deck is None:
         raise StudyError('[model] of type calculix needs a deck = "part.inp"')
     for region in model.region:
@@ -60,7 +60,7 @@ def deck_spec(model: ModelTable, deck: DeckModel, damping: Damping) -> Spec:
     Parameters
     ----------
     model : ModelTable
-        What the study says beside it.
+        What the study states beside it.
     deck : DeckModel
         The deck.
     damping : Damping
@@ -85,7 +85,7 @@ def deck_spec(model: ModelTable, deck: DeckModel, damping: Damping) -> Spec:
 
 
 def known_values(deck: DeckModel) -> dict[str, float]:
-    """Return moduli [Pa] and densities [kg/m3] by the names of their parameters, 1 where no card says one of all."""
+    """Return moduli [Pa] and densities [kg/m3] by the names of their parameters, 1 where no card states one for all."""
     own = {f"{region.name}.": region.materials for region in deck.division.regions}
     every = tuple(dict.fromkeys(name for names in own.values() for name in names))
     made = {head: _material(deck, names) for head, names in {"": every, **own}.items()}

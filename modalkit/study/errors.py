@@ -1,4 +1,4 @@
-"""What is wrong with a study file, in one line that says where."""
+"""What is wrong with a study file, in one line that states where."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from modalkit.study.tables import (
 
 
 def explain(error: ValidationError, root: type[BaseModel]) -> str:
-    """Say in one line what is wrong and where."""
+    """State in one line what is wrong and where."""
     parts = []
     for problem in error.errors()[:3]:
         place = ".".join(str(p) for p in problem["loc"])

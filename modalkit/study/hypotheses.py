@@ -36,7 +36,7 @@ def check_names(tables: Sequence[HypothesisTable]) -> None:
     """
     names = [table.name for table in tables]
     if twice := [name for i, name in enumerate(names) if name in names[:i]]:
-        raise StudyError(f"[[hypothesis]] {twice[0]!r} stands twice; give each its own name")
+        raise StudyError(f"[[hypothesis]] {twice[0]!r} is given twice; give each its own name")
 
 
 def with_hypotheses(
@@ -133,7 +133,7 @@ def _range(table: HypothesisTable, unit: str, hint: str = "") -> tuple[float, fl
     except ValueError as error:
         raise StudyError(f"[[hypothesis]] {table.name!r}: {error}{hint}") from error
     if not table.parameter and low <= 0.0 <= high and max(-low, high) <= 0:
-        raise StudyError(f"[[hypothesis]] {table.name!r}: its range holds nothing but the model as it stands")
+        raise StudyError(f"[[hypothesis]] {table.name!r}: its range holds nothing but the unchanged model")
     return low, high
 
 
@@ -168,7 +168,7 @@ def check_ranges(tables: Sequence[HypothesisTable], known: Mapping[str, float]) 
     tables : sequence of HypothesisTable
         As the study has them.
     known : mapping of str to float
-        Value of each modulus and density by the parameter's name, 1 where no card says it [Pa], [kg/m3].
+        Value of each modulus and density by the parameter's name, 1 where no card states it [Pa], [kg/m3].
 
     Raises
     ------
@@ -181,12 +181,12 @@ def check_ranges(tables: Sequence[HypothesisTable], known: Mapping[str, float]) 
 
 
 def _factor_range(table: HypothesisTable, nominal: float, *, of_deck: bool) -> tuple[str, float, float]:
-    """Return unit and range of a modulus or density: in SI where the model knows its value, as update has it."""
+    """Return unit and range of a modulus or density: in SI where the model has its value, as update has it."""
     name = str(table.parameter)
     what = f"[[hypothesis]] {table.name!r}"
     if nominal == FACTORS_ALONE.E:
         lacks = (
-            "no card of the deck says it of all its elements"
+            "no card of the deck states it of all its elements"
             if of_deck
             else "the study has no [model.material]"
         )

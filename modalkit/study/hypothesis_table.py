@@ -30,7 +30,7 @@ class HypothesisTable(Strict):
     the answer is ``NAME.value``.
     """
     range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
-    """Range of the amount, 0 being the model as it stands. With ``parameter`` required, in the unit in which an update
+    """Range of the amount, 0 being the unchanged model. With ``parameter`` required, in the unit in which an update
     gives it: factors where neither ``[model.material]`` nor the deck's cards say the value.
     """
     why: str = ""

@@ -1,4 +1,4 @@
-"""``[model] type = "matrices"``: what the study file says of them, read and made a specification."""
+"""``[model] type = "matrices"``: what the study file states about them, read and made a specification."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FOREIGN = ("length", "width", "thickness", "elements", "clamped", "theory")
 """Keys of ``[model]`` that beams and plates have and matrices do not."""
 
 FACTORS_ALONE = Material(1.0, 1.0)
-"""Material of matrices of which none is told: modulus and density are factors."""
+"""Material of matrices for which none is stated: modulus and density are factors."""
 
 
 LIGHTEST = 0.1
@@ -73,7 +73,7 @@ def matrices_spec(model: ModelTable, imported: Imported, damping: Damping) -> Sp
     Parameters
     ----------
     model : ModelTable
-        What the study says beside them.
+        What the study states beside them.
     imported : Imported
         The matrices.
     damping : Damping
@@ -119,7 +119,7 @@ def spec_of(
 
 
 def _regions(model: ModelTable, imported: Imported) -> tuple[Region, ...]:
-    """Return the regions, placed where the study says, else where their parts are; one of all if there is none."""
+    """Return the regions, placed where the study states, else where their parts are; one of all if there is none."""
     if not model.region:
         return (Region("all", *sides_of(imported, imported.extents)),)
     found = []
@@ -134,7 +134,7 @@ def _regions(model: ModelTable, imported: Imported) -> tuple[Region, ...]:
             along, across = sides_of(imported, box)
             stated["x"], stated["y"] = along, stated["y"] or across
         if given := [key for key in ("thickness", "area", "inertia") if stated[key] is not None]:
-            raise StudyError(f"[[model.region]] {table.name!r}: imported matrices know no {', '.join(given)}")
+            raise StudyError(f"[[model.region]] {table.name!r}: imported matrices have no {', '.join(given)}")
         found.append(Region(**stated))
     return tuple(found)
 

@@ -48,7 +48,7 @@ def parse_effect(
     Raises
     ------
     InputError
-        If the effect is unknown or a value is no number.
+        If the effect is unknown or a value is not a number.
     """
     name, _, rest = (part.strip() for part in text.partition(":"))
     if name not in effects:
@@ -59,7 +59,7 @@ def parse_effect(
     for entry in filter(None, (part.strip() for part in rest.split(","))):
         parameter, equals, stated = (part.strip() for part in entry.partition("="))
         if parameter in values:
-            raise InputError(f"--effect {text}: {parameter} stands twice")
+            raise InputError(f"--effect {text}: {parameter} is given twice")
         if parameter in effects[name].labels:
             values[parameter] = _points(text, parameter, stated)
             continue
@@ -95,7 +95,7 @@ def _points(text: str, label: str, stated: str) -> Any:
         return nodes(label, found if label == SOME or len(found) > 1 else found[0])
     except (ValueError, StudyError) as error:
         wanted = f"{label}=3/4" if label == SOME else f"{label}=3"
-        raise InputError(f"--effect {text}: {stated!r} are no node numbers; write {wanted}") from error
+        raise InputError(f"--effect {text}: {stated!r} are not node numbers; write {wanted}") from error
 
 
 def _sensor(text: str, stated: str) -> str:

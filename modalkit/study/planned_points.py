@@ -38,8 +38,8 @@ def planned_point(value: Any) -> PlainPoint:
 
 
 _HOW = (
-    '{!r} is no point; write a place along a beam [m], a node of the model and its direction as "12+Z", or coordinates '
-    '[m] and a direction as [0.1, 0.0, 0.3, "+x"]'
+    "{!r} is not a point; write a place along a beam [m], a node of the model and its direction as "
+    '"12+Z", or coordinates [m] and a direction as [0.1, 0.0, 0.3, "+x"]'
 )
 
 

@@ -206,13 +206,13 @@ class Study(Strict):
         return Tolerances(values, damping, parts, bounds)
 
     def accepted(self) -> tuple[tuple[str, dict[str, Any]], ...]:
-        """Return the effects put into the model, with the values of their parameters and the points they speak of.
+        """Return the effects put into the model, with the values of their parameters and the points they name.
 
         Raises
         ------
         StudyError
             If one is unknown, or a value is neither a number nor, where points are meant, node numbers; or if one
-            stands twice that can be there but once.
+            is given twice that can be there but once.
         """
         if self.model is None:
             return ()

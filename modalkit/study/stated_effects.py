@@ -18,11 +18,11 @@ SOME = "points"
 """The label that takes several node numbers; any other takes one."""
 
 BEFORE = "before"
-"""Key of an entry that says whether the effect was there in the baseline, too."""
+"""Key of an entry that states whether the effect was there in the baseline, too."""
 
 
 def was_before(entry: Mapping[str, Any]) -> bool:
-    """Tell whether the effect of one ``[[model.effect]]`` was there in the baseline, too.
+    """Return whether the effect of one ``[[model.effect]]`` was there in the baseline, too.
 
     Where the entry does not say, an effect of the structure was, and one of the measurement was not: that belongs to
     one test.
@@ -65,7 +65,7 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
     name = entry.get("name")
     if not isinstance(name, str) or name not in LIBRARY:
         meant = nearest(str(name), tuple(LIBRARY))
-        raise StudyError(f"[[model.effect]] knows no effect {name!r}{meant}; `modalkit effects` lists them")
+        raise StudyError(f"[[model.effect]] unknown effect {name!r}{meant}; `modalkit effects` lists them")
     try:
         return name, {k: _value(name, k, v, kind) for k, v in values.items()}
     except StudyError as error:
@@ -73,7 +73,7 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
 
 
 def check_repeated(names: Sequence[str]) -> None:
-    """See that no effect stands twice that a structure or a test has but once.
+    """See that no effect is given twice that a structure or a test has but once.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def check_repeated(names: Sequence[str]) -> None:
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and not LIBRARY[name].several]
     if twice:
         raise StudyError(
-            f"[[model.effect]] {twice[0]} stands twice, and there is but one of it; put both into one"
+            f"[[model.effect]] {twice[0]} is given twice, but it can occur only once; combine both entries"
         )
 
 
@@ -99,7 +99,7 @@ def _value(effect: str, name: str, value: Any, kind: Kind) -> Any:
 
 
 def sensor(value: Any) -> str:
-    """Return the fixed sensor that ``channel`` speaks of: its node and direction, or its node.
+    """Return the fixed sensor that ``channel`` names: its node and direction, or its node.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def sensor(value: Any) -> str:
         or not isinstance(value, str | int)
         or not _SENSOR.fullmatch(str(value).strip())
     ):
-        raise StudyError(f'channel = {value!r} is no fixed sensor; write its node and direction, as "5+Z"')
+        raise StudyError(f'channel = {value!r} is not a fixed sensor; write its node and direction, as "5+Z"')
     return str(value).strip()
 
 
@@ -119,12 +119,12 @@ _SENSOR = re.compile(r"\d{1,9}([+-]R?[XYZxyz])?")
 
 
 def nodes(label: str, value: Any) -> int | tuple[int, ...]:
-    """Return the node numbers that a label speaks of: a tuple for ``points``, one number for ``point``.
+    """Return the node numbers that a label names: a tuple for ``points``, one number for ``point``.
 
     Raises
     ------
     StudyError
-        If the value is something else, or a node stands twice.
+        If the value is something else, or a node is given twice.
     """
     several = label == SOME
     given = list(value) if several and isinstance(value, list | tuple) else [value]

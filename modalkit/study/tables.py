@@ -27,10 +27,10 @@ LARGEST_LOSS = 5.0
 """Above the loss factor of any material: rubbers reach some 3 where they turn to glass [-]."""
 
 LARGEST_ASTRAY = 100.0
-"""Points known no better than this say nothing of any structure [m]."""
+"""Points with larger uncertainty than this are not informative for any structure [m]."""
 
 LARGEST_SHAPE_ERROR = 10.0
-"""Shapes known no better than this say nothing [-]."""
+"""Shapes with larger uncertainty than this are not informative [-]."""
 
 LossFactor = Annotated[float, in_unit(""), Field(ge=0, lt=LARGEST_LOSS)]
 Fluid = Annotated[float, in_unit("kg/m^3"), Field(gt=0, lt=30e3)]
@@ -77,7 +77,7 @@ def rising(name: str, ends: tuple[float, float] | None) -> None:
 
 
 def _of_part(name: str, value: Any) -> bool:
-    """Tell whether a key of ``[tolerances]`` names a single parameter."""
+    """Return whether a key of ``[tolerances]`` names a single parameter."""
     return "." in name or isinstance(value, dict)
 
 
@@ -134,7 +134,7 @@ class MeasurementTable(Strict):
     leave: list[tuple[str, int]] = []
     """Hits to leave out, in the same form."""
     add: list[Hertz] = []
-    """Modes to keep whatever the statistics say, by frequency [Hz]."""
+    """Modes to keep regardless of the statistics, by frequency [Hz]."""
     drop: list[Hertz] = []
     """Modes to leave out of the result, by frequency [Hz]."""
     order: Annotated[int, Field(ge=2, le=400)] | None = None
@@ -191,14 +191,14 @@ class MeasurementTable(Strict):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        """See that the band is one, and that modes come without what is said of records and FRFs."""
+        """See that the band is one, and that modes come without what is stated about records and FRFs."""
         rising("band", self.band)
         if self.modes is None:
             if self.shape_sigma is not None:
                 instead = (
-                    "of files the identification says how well shapes are known"
+                    "for files the identification gives the uncertainty of shapes"
                     if self.files
-                    else "a planned test takes none, its forecast says how well it takes shapes to be known"
+                    else "a planned test takes none, its forecast states the assumed uncertainty of shapes"
                 )
                 raise ValueError(f"shape_sigma is of modes; {instead}: leave it out")
             return self
@@ -207,8 +207,8 @@ class MeasurementTable(Strict):
         of_mat = self.modes.lower().endswith(".mat")
         if of_mat and self.layout is None:
             raise ValueError(
-                f'modes = {self.modes!r} is a MATLAB file: layout = "layout.toml" has to say which of its variables is '
-                "what (docs/howto/matlab.md)"
+                f'modes = {self.modes!r} is a MATLAB file: layout = "layout.toml" must state the meaning '
+                "of its variables (docs/howto/matlab.md)"
             )
         useless = [key for key in OF_RECORDS if not (of_mat and key == "layout")]
         stated = [key for key in useless if getattr(self, key) != type(self).model_fields[key].default]
@@ -216,8 +216,8 @@ class MeasurementTable(Strict):
             rows = {"add", "drop"} & {*stated}
             way = " (lines of the table), or set `band`, which leaves out the modes beyond it" if rows else ""
             raise ValueError(
-                f"{', '.join(stated)}: said of records or FRFs, but modes = {self.modes!r} are modes already; leave "
-                f"it out, and change the modes themselves if they need it{way}"
+                f"{', '.join(stated)}: given for records or FRFs, but modes = {self.modes!r} are modes "
+                f"already; leave it out, and change the modes themselves if they need it{way}"
             )
         return self
 
@@ -456,7 +456,7 @@ class UpdateTable(Strict):
         """See that no parameter is named twice in a list, or in a stage, and that no stage is empty."""
         for names in value if value and isinstance(value[0], list) else [value or []]:
             if twice := [name for i, name in enumerate(names) if name in names[:i]]:
-                raise ValueError(f"{twice[0]!r} stands twice")
+                raise ValueError(f"{twice[0]!r} is given twice")
             if value and not names:
                 raise ValueError("a stage without parameters; name some, or leave it out")
         return value

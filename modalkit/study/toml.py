@@ -1,4 +1,4 @@
-"""A TOML file, or a line that says why it is none."""
+"""A TOML file, or a line that states why it is not one."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def _add(face: tuple[int, ...], faces: list[tuple[int, ...]], found: set[frozens
 
 
 def _flat(corners: FloatArray) -> bool:
-    """Tell whether four corners lie in a plane, and span one."""
+    """Return whether four corners lie in a plane, and span one."""
     centred = corners - corners.mean(axis=0)
     size = np.linalg.svd(centred, compute_uv=False)
     return bool(size[1] > 0.05 * size[0] and size[2] <= FLAT * size[0])

@@ -17,7 +17,7 @@ FEW = 6.0
 to four; solids have 26 and more, most of them diagonals through the inside [-]."""
 
 LARGEST = 20_000
-"""Nodes of a mesh that is drawn whole; of a larger one the skin is, too, but no couplings are looked for [-]."""
+"""Nodes of a mesh that is drawn whole; of a larger one the skin is, too, but no couplings are sought [-]."""
 
 QUADS = {
     4: ((0, 1, 2, 3),),

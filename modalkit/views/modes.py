@@ -23,7 +23,7 @@ WHENCE = {
     "named": "picked by you",
     "file": "read from the file",
 }
-"""What is said of where a mode comes from."""
+"""Text on the origin of a mode."""
 
 
 def table_of(modes: ModalModel | Modes, origins: Origins | None) -> list[dict[str, Any]]:

@@ -126,7 +126,7 @@ def _still(modal: ModalData, measured: Sequence[int]) -> list[int]:
 
 
 def _places(modal: ModalData, nodes: list[int]) -> tuple[FloatArray, bool]:
-    """Return where the points are, and whether the file says so; else they stand in a row."""
+    """Return where the points are, and whether the file states it; else they stand in a row."""
     if all(node in modal.geometry for node in nodes):
         return modal.geometry.at(nodes), True
     return np.stack([np.arange(float(len(nodes))), *2 * [np.zeros(len(nodes))]], axis=1), False
@@ -263,7 +263,7 @@ def _own_mesh(session: Session, predictor: Predictor, count: int) -> dict[str, A
     along = np.tile(axes.rotation.T, (len(used), 1))  # the test's axes, as the model has them
     try:
         rows = predictor.reduced.rows(np.repeat(mesh.places[used], 3, axis=0), along)["w"][:, :count]
-    except ModalkitError:  # matrices that do not know all three motions of a node
+    except ModalkitError:  # matrices that lack some of the three motions of a node
         return None
     return {
         "places": mesh.places[used] @ axes.rotation + np.asarray(axes.origin),

@@ -44,17 +44,17 @@ class CommandFailedError(EstimationError):
     code : int
         The code [-].
     statement : str
-        What it said of its failure.
+        Its message on failure.
     """
 
     def __init__(self, command: str, code: int, statement: str) -> None:
-        """Say what failed, and how."""
+        """State what failed, and how."""
         super().__init__(f"`modalkit {command}` ended with code {code}: {statement}")
         self.statement = statement
 
 
 class WarmProcess:
-    """A process with modalkit loaded, for commands that must not know anything of this one.
+    """A process with modalkit loaded, for commands that must be independent of this one.
 
     It gets what an interpreter needs of the environment, no descriptors but its pipes, and one BLAS thread; the
     current folder is not on its module path. One
@@ -63,7 +63,7 @@ class WarmProcess:
     Parameters
     ----------
     command : sequence of str
-        What is started; it speaks the language of :mod:`modalkit.workers.server`.
+        What is started; it uses the protocol of :mod:`modalkit.workers.server`.
     timeout : float
         Longest time a command may take [s].
     attempts : int
@@ -77,7 +77,7 @@ class WarmProcess:
         timeout: float = TIMEOUT,
         attempts: int = ATTEMPTS,
     ) -> None:
-        """Say what is to be started; it starts with the first command."""
+        """State what is to be started; it starts with the first command."""
         self.command = tuple(command)
         self.timeout = timeout
         self.attempts = attempts
@@ -148,7 +148,7 @@ class WarmProcess:
         assert process.stdin is not None
         assert process.stdout is not None
         with contextlib.suppress(OSError):
-            process.stdin.close()  # it ends when nobody asks any more
+            process.stdin.close()  # it ends when no request comes any more
         if not self._greeted:
             process.kill()  # it is still loading, and at work on nothing
         try:
@@ -191,8 +191,8 @@ class WarmProcess:
             else:
                 return
         raise EstimationError(
-            f"the process of `modalkit {arguments[0]}` died {self.attempts} times ({died}); memory may be too small, "
-            "or somebody ends it"
+            f"the process of `modalkit {arguments[0]}` died {self.attempts} times ({died}); memory may be "
+            "too small, or another program ends it"
         )
 
     def _ask(self, request: Mapping[str, Any]) -> dict[str, Any] | None:

@@ -34,7 +34,7 @@ class Keeper:
     """
 
     def __init__(self, *, version: str = __version__, command: Sequence[str] | None = ()) -> None:
-        """Say what is to be started, and with which version."""
+        """State what is to be started, and with which version."""
         self.version = version
         self.command = command
 
@@ -223,19 +223,19 @@ def check_scheduler(scheduler: str) -> None:
         raise InputError(f"--scheduler {scheduler!r}: not an address; give it as tcp://host:8786")
     try:
         with socket.create_connection((found["host"], int(found["port"])), timeout=_CONNECT) as line:
-            if not scheduler.startswith("tls:") and not line.recv(1):  # a scheduler speaks first
+            if not scheduler.startswith("tls:") and not line.recv(1):  # a scheduler sends first
                 raise InputError(_strange(scheduler))
     except TimeoutError as error:
         raise InputError(_strange(scheduler)) from error
     except (OSError, OverflowError) as error:
         raise InputError(
-            f"--scheduler {scheduler}: nobody answers there; start one with `dask scheduler` and give its address, "
-            "tcp://host:8786"
+            f"--scheduler {scheduler}: no answer there; start one with `dask scheduler` and give its "
+            "address, tcp://host:8786"
         ) from error
 
 
 def _strange(scheduler: str) -> str:
-    return f"--scheduler {scheduler}: what is there is no Dask scheduler that is understood; see the address"
+    return f"--scheduler {scheduler}: the program there is not a compatible Dask scheduler; check the address"
 
 
 def _result(future: Any) -> Any:

@@ -37,7 +37,7 @@ def read_journal(path: Path) -> tuple[list[dict[str, Any]], int]:
     Raises
     ------
     InputError
-        If it cannot be read, ends as no journal does, or a whole line is no JSON.
+        If it cannot be read, ends as no journal does, or a whole line is not JSON.
     """
     try:
         content = path.read_bytes()
@@ -45,23 +45,23 @@ def read_journal(path: Path) -> tuple[list[dict[str, Any]], int]:
         raise InputError(f"{path}: cannot be read ({error.strerror}); name the store of a run") from error
     size = content.rfind(b"\n") + 1
     if content[size : size + 1] not in (b"", b"{"):
-        raise InputError(f"{path}: no store of a run, or damaged; name another file")
+        raise InputError(f"{path}: not a store of a run, or damaged; name another file")
     documents = []
     for number, line in enumerate(content[:size].splitlines(), start=1):
         try:
             document = json.loads(line)
         except (ValueError, RecursionError) as error:
             raise InputError(
-                f"{path}, line {number}: no JSON; the file was changed or is no store of a run"
+                f"{path}, line {number}: no JSON; the file was changed or is not a store of a run"
             ) from error
         if not isinstance(document, dict):
-            raise InputError(f"{path}, line {number}: not a record; the file is no store of a run")
+            raise InputError(f"{path}, line {number}: not a record; the file is not a store of a run")
         documents.append(document)
     return documents, size
 
 
 def is_store(documents: Sequence[Mapping[str, Any]]) -> bool:
-    """Tell whether documents begin as those of our stores do; another's lines are not to be cut."""
+    """Return whether documents begin as those of our stores do; another's lines are not to be cut."""
     return bool(documents) and str(documents[0].get("schema", "")).startswith("modalkit.")
 
 
@@ -78,7 +78,7 @@ class Journal:
     Raises
     ------
     InputError
-        If there is one and it is not to be resumed, it cannot be written, or somebody else writes to it.
+        If there is one and it is not to be resumed, it cannot be written, or another run writes to it.
     """
 
     def __init__(self, path: Path, *, resume: bool = False) -> None:
@@ -106,10 +106,10 @@ class Journal:
         if not os.fstat(self._file).st_size:
             return ()
         if not resume:
-            raise InputError(f"{self.path}: stands there; --resume goes on with it, or name another file")
+            raise InputError(f"{self.path}: exists; continue it with --resume, or name another file")
         documents, size = read_journal(self.path)
         if not (is_store(documents) or (not documents and is_torn_header(self.path.read_bytes()))):
-            raise InputError(f"{self.path}: is no store of a run; name another file")
+            raise InputError(f"{self.path}: is not a store of a run; name another file")
         os.ftruncate(self._file, size)
         return tuple(documents)
 

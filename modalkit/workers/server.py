@@ -1,4 +1,4 @@
-"""The serving side: read a command per line, run it in a fork that knows nothing else, answer a line."""
+"""The serving side: read a command per line, run it in a fork with nothing else loaded, answer a line."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def serve_standard(program: Program) -> None:
     Each line in is ``{"folder", "arguments", "timeout"}``: where the command runs, its words without
     ``modalkit``, and the longest time it may take [s]. Each line out is ``{"code", "signal", "late",
     "message"}``: the exit code or the signal that ended it, whether its time was over, and its last line on
-    standard error. The first line out, ``{"ready": version}``, says that everything is loaded.
+    standard error. The first line out, ``{"ready": version}``, means that everything is loaded.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def _answer(code: int, statement: str, *, late: bool = False) -> dict[str, Any]:
 
 
 def _listen(reading: int, requests: BinaryIO, end: float) -> tuple[bytes, Literal["done", "late", "alone"]]:
-    """Gather what a fork says until it is done, late, or nobody waits any more; keeps the last of it."""
+    """Gather the output of a fork until it is done, late, or no longer needed; keeps the last of it."""
     statement = b""
     while (left := end - time.monotonic()) > 0:
         ready, _, _ = select.select([reading, requests.fileno()], [], [], left)
@@ -118,7 +118,7 @@ def _listen(reading: int, requests: BinaryIO, end: float) -> tuple[bytes, Litera
 
 
 def _become(program: Program, saying: int, folder: Path, arguments: Sequence[str]) -> NoReturn:
-    """Turn a fork into the command: own group, own folder, no descriptor but the one it speaks to."""
+    """Turn a fork into the command: own group, own folder, no descriptor but the one it writes to."""
     code = 70
     try:
         os.setsid()

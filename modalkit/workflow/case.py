@@ -40,7 +40,7 @@ class Session(Animated):
     processed, identified : Processed, ModalModel, optional
         FRFs and identification of the test, where it has FRFs.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     """
 
     study: Study
@@ -143,9 +143,9 @@ def process(
     study : Study
         The study.
     band, order : tuple of float and int, optional
-        Instead of what the study says.
+        Instead of what the study states.
     add, drop : sequence of float
-        Beside what the study says: modes to keep and to leave out [Hz].
+        Beside what the study states: modes to keep and to leave out [Hz].
     progress : function, optional
         Called with the part of the files that is read, from 0 to 1.
 
@@ -300,9 +300,9 @@ def _health(processed: Processed | None, identified: ModalModel | None) -> tuple
 
 
 def _with_levels(measured: Measured, processed: Processed, identified: ModalModel) -> Measured:
-    """Add how frequencies follow the force of the hits, where these tell.
+    """Add how frequencies follow the force of the hits, where these show it.
 
-    FRFs freed from the mass of a sensor are not those of single hits, so nothing is said of them.
+    FRFs freed from the mass of a sensor are not those of single hits, so they are not reported.
     """
     stated = processed.processing
     if stated.sensor_masses or not processed.judged:

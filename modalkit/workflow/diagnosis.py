@@ -30,7 +30,7 @@ def diagnose_studies(
     shared : sequence of str
         Effects of one and the same size in all studies; those of all others are free in each.
     without : sequence of str
-        Effects of the library that are left out, as if it did not know them.
+        Effects of the library that are left out, as if it did not have them.
     rules : DecisionRules
         What the verdict is decided by.
     progress : function, optional

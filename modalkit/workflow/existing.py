@@ -26,7 +26,7 @@ class Modes(Shown, Animated):
     title : str
         Title of the test.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     """
 
     modal: ModalData

@@ -114,12 +114,12 @@ def _with_modes(content: UffContent, paths: Sequence[Path], layout: Layout | Non
 
 
 def _modes(path: Path, layout: Layout | None) -> ModalData:
-    """Read a file of modes that nobody named as one.
+    """Read a file of modes that was not named as one.
 
     Raises
     ------
     InputError
-        If it cannot be read, or is a table of FRFs: frequencies as even as lines are are no modes.
+        If it cannot be read, or is a table of FRFs: evenly spaced frequencies are lines.
     """
     if layout is not None and path.suffix.lower() == ".mat":
         found = read_mat(path, layout)
@@ -129,7 +129,7 @@ def _modes(path: Path, layout: Layout | None) -> ModalData:
         modal = read_modes(path)
         steps = np.diff(modal.frequency)
         if len(steps) >= FEW and np.ptp(steps) < EVEN * np.abs(steps).max():
-            raise InputError(f"{path}: {len(modal)} evenly spaced frequencies are lines, no modes")
+            raise InputError(f"{path}: {len(modal)} evenly spaced frequencies are spectral lines, not modes")
         return modal
     except InputError as error:
         if path.suffix.lower() not in TABLES or not path.is_file():

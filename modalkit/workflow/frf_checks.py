@@ -1,4 +1,4 @@
-"""FRFs that cannot be what they are said to be: copies of each other, and constants."""
+"""FRFs that cannot be correct: copies of each other, and constants."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def identical(frfs: FrfSet) -> tuple[str, ...]:
 
 
 def _unlike(frfs: FrfSet, rows: Sequence[int]) -> bool:
-    """Tell whether rows are not just H_ij and H_ji."""
+    """Return whether rows are not just H_ij and H_ji."""
     ends = {
         frozenset(((r.node, abs(r.direction)), (f.node, abs(f.direction))))
         for r, f in ((frfs.responses[i], frfs.references[i]) for i in rows)

@@ -1,4 +1,4 @@
-"""What the user ought to know of hits before their FRFs are used."""
+"""Warnings on hits before their FRFs are used."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ TIMES = 3.0
 passes [-]."""
 
 OTHERS = 3
-"""FRFs of the same response to compare with, at least; of two, neither says which is odd [-]."""
+"""FRFs of the same response to compare with, at least; of two, it is not clear which is odd [-]."""
 
 MENDED = 0.5
 """Part of the missing coherence that must come back without a hit before that hit is named [-]."""
 
 
 def on_hits(judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]]) -> list[str]:
-    """Return remarks on points without hits, with a single one, and on dead responses.
+    """Return warnings on points without hits, with a single one, and on dead responses.
 
     Parameters
     ----------
@@ -58,8 +58,8 @@ def _single(judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]]) -> list[s
         return []
     where = "every point" if all(count == 1 for _, count in counts) else _listed(alone)
     return [
-        f"a single usable hit at {where}: so no coherence and no scatter of hits are known, at no point; hit there "
-        "again, or leave the point out"
+        f"only one usable hit at {where}: coherence and scatter of the hits are therefore unknown at every "
+        "point; hit there again, or leave the point out"
     ]
 
 
@@ -74,7 +74,7 @@ def _dead(judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]]) -> list[str
 
 
 def on_coherence(frfs: FrfSet, judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]] = ()) -> list[str]:
-    """Return a remark on each FRF whose coherence is far below that of the others of the same response.
+    """Return a warning on each FRF whose coherence is far below that of the others of the same response.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _culprit(point: str, judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]
 
 
 def on_window(test: HammerTest) -> list[str]:
-    """Return a remark if the noise of the force shows an exponential window that nobody stated.
+    """Return a warning if the noise of the force shows an exponential window that is not stated.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From files to FRFs to modes: the part of the chain that knows no model."""
+"""From files to FRFs to modes: the part of the chain without a model."""
 
 from __future__ import annotations
 
@@ -90,9 +90,9 @@ class Processed(Shown):
     judged : tuple of Judged
         The hits they were estimated from; empty where the files held FRFs.
     processing : ProcessingOptions
-        What the user said.
+        What the user stated.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     """
 
     content: UffContent
@@ -103,7 +103,7 @@ class Processed(Shown):
 
     @property
     def hits(self) -> tuple[HitVerdict, ...]:
-        """What is thought of every hit."""
+        """Verdict on every hit."""
         return tuple(v for judged in self.judged for v in judged.verdicts)
 
     def hits_table(self) -> pd.DataFrame:
@@ -122,7 +122,7 @@ class Processed(Shown):
 
         Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
         the part in which the FRFs carry information, and what was done is among the warnings; so is what was found of
-        the hits that changes a number, as a window that nobody stated.
+        the hits that changes a number, as a window that is not stated.
         """
         model = self._modes(band, order, add, drop)
         own = [w for w in self.warnings if isinstance(w, Consequential)]
@@ -158,7 +158,7 @@ class Processed(Shown):
         if reach is None:
             return self._informed(band, order, add, drop)
         statement = Consequential(
-            f"the force is 20 dB down at {hertz(reach[1])}: modes are looked for below that; give a band to go "
+            f"the force is 20 dB down at {hertz(reach[1])}: modes are sought below that; give a band to go "
             "further"
         )
         with _naming_band(self.frfs, None, statement):
@@ -273,14 +273,14 @@ def read(
     ----------
     path : path or sequence of paths
         The files: UFF, column text or .mat with a layout, a table or a JSON file of modes, or what an installed
-        reader knows.
+        reader supports.
     decay : float
         Decay rate of an exponential window applied before the files were written, where they do not say it
-        themselves; short for ``Handling(decay=...)`` [1/s].
+        themselves; short for ``ProcessingOptions(decay=...)`` [1/s].
     layout : path, optional
-        Layout of column text; short for ``Handling(layout=...)``.
+        Layout of column text; short for ``ProcessingOptions(layout=...)``.
     processing : ProcessingOptions
-        All that may be said of how records are treated.
+        All that may be stated about how records are treated.
     progress : function, optional
         Called with the part of the files that is read, from 0 to 1.
 
@@ -292,7 +292,7 @@ def read(
     Raises
     ------
     InputError
-        If the files hold nothing of that, or what is said of their treatment does not fit them.
+        If the files hold nothing of that, or what is stated about their treatment does not fit them.
     """
     processing = _statement(processing, decay, layout)
     paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
@@ -334,13 +334,13 @@ def read_frfs(
 
 
 def _statement(processing: ProcessingOptions, decay: float, layout: Path | str | None) -> ProcessingOptions:
-    """Return the handling with what was said beside it."""
+    """Return the processing options with what was stated beside them."""
     processing = replace(processing, decay=decay) if decay else processing
     processing = processing if layout is None else replace(processing, layout=Path(layout))
     if processing.window_on is not None and not processing.decay:
         raise InputError(
-            f"a window on {processing.window_on} is told of without its decay; add --decay, or exponential_window in a "
-            "study"
+            f"a window on {processing.window_on} is stated without its decay; add --decay, or "
+            "exponential_window in a study"
         )
     return processing
 
@@ -360,7 +360,7 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
     Raises
     ------
     InputError
-        If there are neither hits nor FRFs, or what is said of their treatment does not fit them.
+        If there are neither hits nor FRFs, or what is stated about their treatment does not fit them.
     """
     warnings = list(content.warnings)
     if processing.references:
@@ -386,16 +386,16 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
 
 
 def _nothing_usable(content: UffContent, paths: Sequence[Path]) -> str:
-    """Say why there is nothing to work on: the first reason why something was left out, or that nothing is there."""
+    """State why there is nothing to work on: the first reason why something was left out, or that nothing is there."""
     if not content.reasons:
         return f"{named_files(paths)}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is"
     first, *others = content.reasons
     more = f"; `modalkit inspect` lists what else is not used ({len(others)})" if others else ""
-    return f"{first}; there are neither raw hits nor FRFs to work on{more}"
+    return f"{first}; no raw hits and no FRFs are usable{more}"
 
 
 def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -> FrfSet:
-    """Return FRFs that were read, with the window stated; what is said of hits has nothing to act on."""
+    """Return FRFs that were read, with the window stated; what is stated about hits has nothing to act on."""
     statement = {"--use": processing.use, "--leave": processing.leave, "--window": processing.window}
     useless = [name for name, value in statement.items() if value]
     if useless:
@@ -421,8 +421,8 @@ def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -
 def _check_decay(source: str, stated: float, statement: float) -> None:
     if abs(stated - statement) > SAME_DECAY * stated:
         raise InputError(
-            f"{source}: the file states an exponential window of {stated:g} 1/s, but {statement:g} 1/s is said; "
-            "leave one out or mend the other"
+            f"{source}: the file states an exponential window of {stated:g} 1/s, but {statement:g} 1/s is "
+            "given; leave one out or correct the other"
         )
 
 
@@ -449,14 +449,14 @@ def _judged(
 
 
 def stated(test: HammerTest, processing: ProcessingOptions, warnings: list[str]) -> HammerTest:
-    """Return a test with the window stated that is said to have been applied; one that nobody states is warned of.
+    """Return a test with the window stated that was applied; warn of one that is not stated.
 
     Parameters
     ----------
     test : HammerTest
         Records, one a hit.
     processing : ProcessingOptions
-        What the user says of the window.
+        What the user states about the window.
     warnings : list of str
         What was found is added to it.
 
@@ -481,7 +481,7 @@ def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, 
     Parameters
     ----------
     tests : sequence of tuple of HitVerdict
-        What `judge_hits` says of each test.
+        Verdicts of `judge_hits` on each test.
     """
     seen: dict[Dof, int] = {}
     answer = []

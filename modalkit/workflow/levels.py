@@ -1,4 +1,4 @@
-"""Tests whose frequencies follow the force of the hits: said, and where averages smear modes, brought to one level."""
+"""Tests whose frequencies follow the force of the hits: a warning, and where averages smear modes, one common level."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ are faint, then by their own. Where levels moved modes by three half-widths, a t
 def with_levels(
     select: Select, tests: Tests, of: Callable[[Data], Select], *, windows: Windows | None
 ) -> ModalModel:
-    """Return the modes of a test, with what its hits say of their level; of one level where they smear.
+    """Return the modes of a test, with the levels found from its hits; of one level where they smear.
 
     How frequencies follow the level is examined where they differ from FRF to FRF, which a mode that follows the level
     cannot but do, or where constants follow it. Modes whose constants do are products of others, and dropped.
@@ -101,7 +101,7 @@ def _nearest(model: ModalModel, other: ModalModel) -> IntArray:
 def _examined(
     state: Examined, tests: Tests, of: Callable[[Data], Select], windows: Windows | None
 ) -> ModalModel:
-    """Return the modes of one level that are no products of others, with what is to be said of both."""
+    """Return the modes of one level that are not products of others, with notes on both."""
     from identification import follows_level, growth, is_smeared, with_line_doubt
 
     grown = growth(state.model, tests, state.found, windows=windows)
@@ -156,7 +156,7 @@ def _of_others(grown: Growth) -> BoolArray:
 
 
 def _newcomers(now: Examined, before: Examined, reach: FloatArray) -> bool:
-    """Tell whether there are modes that were not there before: peaks that others, since left out, had covered."""
+    """Return whether there are modes that were not there before: peaks that others, since left out, had covered."""
     apart = np.abs(now.model.modal.frequency[:, None] - before.model.modal.frequency)
     return bool((apart > reach).all(axis=1).any())
 
@@ -208,7 +208,7 @@ def _reach(state: Examined, modes: BoolArray) -> FloatArray:
 
 
 def _on_products(state: Examined, products: Products) -> tuple[str, ...]:
-    """Return what is to be said of peaks whose constants grow with the force."""
+    """Return notes on peaks whose constants grow with the force."""
     if not products.names:
         return ()
     return (
@@ -219,7 +219,7 @@ def _on_products(state: Examined, products: Products) -> tuple[str, ...]:
 
 
 def _with_coincidences(model: ModalModel) -> ModalModel:
-    """Return a model that says which modes may be products of others, where no hits tell."""
+    """Return a model that lists which modes may be products of others, where no hits decide."""
     from identification import coincidences
 
     found = coincidences(model)
@@ -235,7 +235,7 @@ def _with_coincidences(model: ModalModel) -> ModalModel:
 
 
 def _statement(model: ModalModel, found: LevelDependence, smeared: bool) -> str:
-    """Return what is to be said of modes that follow the level."""
+    """Return notes on modes that follow the level."""
     from identification import follows_level
 
     change = 100 * found.slope * (found.strongest - found.weakest)

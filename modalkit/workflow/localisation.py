@@ -19,7 +19,7 @@ def localise_study(
     methods: Sequence[str] = tuple(METHODS),
     kind: Kind = "stiffness",
 ) -> Localisation:
-    """Say which region of a study's model each method suspects, before anything is updated.
+    """State which region of a study's model each method suspects, before anything is updated.
 
     Parameters
     ----------

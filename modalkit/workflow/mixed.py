@@ -41,12 +41,12 @@ def with_read(
         joined = together(_on_common_lines(made, others if others.decay else replace(others, decay=decay)))
     except InputError as error:
         warnings.append(
-            f"FRFs that no raw hits are there for are left out ({names}), since they do not go with those made of the "
-            f"hits: {error}"
+            f"FRFs without raw hits are left out ({names}), since they do not match the FRFs estimated "
+            f"from the hits: {error}"
         )
         return made
     warnings.append(
-        f"FRFs that no raw hits are there for are used as read ({names}); the scatter of their hits is not known, so "
+        f"FRFs without raw hits are used as read ({names}); the scatter of their hits is not known, so "
         "that of the others is not used either"
     )
     return joined

@@ -43,7 +43,7 @@ class PlannedPoints:
     sensor: int | None
 
     def test(self, study: Study, sensor: int) -> Measured:
-        """Return the test without modes: every point is hit, one is looked at."""
+        """Return the test without modes: every point is hit, one is observed."""
         n, none, table = len(self.hit), np.zeros(0), study.test
         return Measured(
             none, none, none, none, self.points, self.nodes, np.full(n, sensor), np.array(self.hit),
@@ -101,7 +101,7 @@ def _placed(stated: list[PlainPoint], spec: Spec) -> Placed:
             dof = Dof.of(one)
             where = _of_node(dof.node, spec)
         elif isinstance(one, tuple) and spec.kind == "beam":
-            raise StudyError(f"{list(one[:-1])} is no place along a beam; {_how(spec)}")
+            raise StudyError(f"{list(one[:-1])} is not a place along a beam; {_how(spec)}")
         elif isinstance(one, tuple):
             *place_of, way = one
             where = np.array([*place_of, 0.0][:3])
@@ -126,7 +126,8 @@ def _of_node(node: int, spec: Spec) -> FloatArray:
     here = np.flatnonzero(places.node == node)
     if not len(here):
         raise StudyError(
-            f"node {node} is none of the model's, which reach from {places.node.min()} to {places.node.max()}"
+            f"node {node} is not one of the model's, which reach from {places.node.min()} to "
+            f"{places.node.max()}"
         )
     return np.asarray(places.at[here[0]])
 

@@ -1,4 +1,4 @@
-"""What the user may say about how records are to be treated."""
+"""What the user may state about the treatment of records."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ProcessingOptions:
         Decay rate of an exponential window applied before the files were written, where they do not say it
         themselves [1/s].
     window_on : {"both", "responses"}, optional
-        Which records that window was applied to; left out: as the noise of the force tells.
+        Which records that window was applied to; left out: as the noise of the force shows.
     window : float
         Decay rate of a further exponential window, applied here; 0 for none [1/s].
     estimator : {"H1", "H2", "Hv"}

@@ -20,7 +20,7 @@ def without_sensors(frfs: FrfSet, masses: Sequence[tuple[str, float]], warnings:
         Where accelerometers sat during the whole test, as printed, and their masses [kg]. Other responses are
         taken to weigh nothing.
     warnings : list of str
-        What is said is added here.
+        Warnings are added here.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def without_sensors(frfs: FrfSet, masses: Sequence[tuple[str, float]], warnings:
         given[dof] = mass
     result = remove_sensor_mass(frfs, mass=dict.fromkeys(there, 0.0) | given)
     stated = ", ".join(f"{quantity(mass, 'kg')} at {dof}" for dof, mass in given.items())
-    warnings.append(Consequential(f"the mass of the accelerometers was taken out of the FRFs: {stated}"))
+    warnings.append(Consequential(f"the mass of the accelerometers was removed from the FRFs: {stated}"))
     return result
 
 

@@ -1,4 +1,4 @@
-"""Where a study says that test points are, and which way it says that sensors point."""
+"""Stated places of test points, and stated directions of sensors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def with_places(
 ) -> tuple[ModalData, tuple[str, ...]]:
     """Return modes with the places and directions that a study states of their points, and what to say of it.
 
-    A point of which neither file nor study says where it is, is taken for the node of that number of a model
+    A point whose place is stated neither in the file nor in the study is taken for the node of that number of a model
     with nodes.
 
     Parameters
@@ -24,7 +24,7 @@ def with_places(
     modal : ModalData
         The modes.
     table : MeasurementTable
-        What the study says of their measurement.
+        What the study states about their measurement.
     axes : Axes
         The model's axes in the coordinates of the test.
     spec : Spec

@@ -28,7 +28,7 @@ def update_studies(
     draws: int = 0,
     seed: int = 0,
 ) -> Update:
-    """Update the models of one or several studies as their ``[update]`` tables say.
+    """Update the models of one or several studies as their ``[update]`` tables state.
 
     Parameters
     ----------

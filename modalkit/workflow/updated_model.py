@@ -1,4 +1,4 @@
-"""The model of a study after an update, to be looked at beside its test."""
+"""The model of a study after an update, to be compared with its test."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ import numpy as np
 
 NUMBER = re.compile(rb"[+-]?(\d+(?:\.\d*)?|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?")
 DOF = re.compile(rb"^\s*\d+[+-]R?[XYZ]\s*$")
-"""A heading that names a point and a direction, each as good as any other where none stands twice."""
+"""A heading that names a point and a direction, each as good as any other where none is given twice."""
 SEPARATORS = re.compile(rb"[\s,;]+")
 Judge = Callable[[bytes, bytes], bool]
 

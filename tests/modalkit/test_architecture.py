@@ -163,3 +163,92 @@ def test_names_are_words_of_the_field(room: str) -> None:
         }
         parts = {name: {part.lower() for part in re.findall(r"[A-Z]?[a-z]+", name)} for name in names}
         assert not {name for name in names if parts[name] & PRIVATE}, path
+
+
+WRITTEN = {
+    "told": "stated, given, separated",
+    "tells": "shows, determines",
+    "said": "stated",
+    "says": "states",
+    "heard": "recorded",
+    "hears": "records",
+    "looked": "sought, examined, observed",
+    "knows": "has, includes",
+    "speaks": "names, supports",
+    "climb": "maximisation",
+    "climbs": "maximisations",
+    "climbed": "maximised",
+    "knob": "parameter",
+    "knobs": "parameters",
+    "seat": "location",
+    "whiten": "normal equations",
+    "posed": "diagnosis problem",
+    "shortfall": "theory error",
+    "thinned": "selected",
+    "thinning": "line selection",
+    "leftover": "residual peak",
+    "overrule": "manual selection",
+    "remarks": "notes, warnings",
+    "weighed": "compared, weighted",
+    "secret": "hidden effect",
+    "grams": "normal equations",
+    "drown": "is below the noise",
+    "handling": "processing options",
+    "is no number": "is not a number",
+    "are no numbers": "are not numbers",
+    "no one test": "several tests",
+    "tell apart": "separate",
+    "told apart": "separated",
+    "tells apart": "separates",
+    "taken as a doubt": "treated as model uncertainty",
+    "may as well be it": "is as likely",
+    "ought to know": "should know",
+}
+"""Words and phrases that docstrings, comments and messages do without, each with the plain one."""
+
+LITERAL = {
+    "weighed": ("weighed mass", "specimen is weighed"),
+    "secret": ("Keep it secret",),
+    "grams": ("mass [kg] in grams",),
+}
+"""Phrases in which a word is meant literally."""
+
+
+def written(path: Path) -> list[tuple[int, str]]:
+    """Return docstrings, comments and texts of more than one word, with their lines; code in quotes is left out."""
+    found = []
+    for token in tokenize.generate_tokens(io.StringIO(path.read_text(encoding="utf-8")).readline):
+        if token.type in (tokenize.STRING, tokenize.COMMENT) and len(token.string.split()) > 1:
+            found.append((token.start[0], re.sub(r"``[^`]*``|`[^`]*`|\s+", " ", token.string)))
+    return found
+
+
+def unplain(text: str) -> set[str]:
+    """Return the words and phrases of the list that are in a text."""
+    words = f" {' '.join(re.findall(r'[a-z]+', text.lower()))} "
+    found = {word for word in WRITTEN if f" {word} " in words}
+    return {word for word in found if not any(phrase in text for phrase in LITERAL.get(word, ()))}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_docstrings_comments_and_messages_are_plain_english(room: str) -> None:
+    found = {
+        f"{path.relative_to(ROOT)}:{line}": {word: WRITTEN[word] for word in words}
+        for path in sources(room)
+        for line, text in written(path)
+        if (words := unplain(text))
+    }
+    assert not found
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('"""Tell what the noise says."""', {"says"}),
+        ('f"{path}: {word!r} is no number"', {"is no number"}),
+        ('"effects that no test\n tells apart"', {"tells", "tells apart"}),
+        ('"a number, as the file states it"', set()),
+    ],
+)
+def test_a_sentence_that_has_to_be_read_twice_is_found(text: str, words: set[str]) -> None:
+    assert unplain(text) == words

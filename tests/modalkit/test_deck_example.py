@@ -56,7 +56,7 @@ def test_the_web_is_where_the_gap_lies(bracket: Path, run: Run) -> None:
 REFUSED = {
     "set": ('[[model.region]]\nname = "rib"\n', "'rib': no element set or material rib"),
     "place": ('[[model.region]]\nname = "WEB"\nx = [0.0, 0.1]\n', "'WEB' takes no x on a deck"),
-    "material": ("[model.material]\nE = 210e9\ndensity = 7850\n", "takes no material: the deck says it"),
+    "material": ("[model.material]\nE = 210e9\ndensity = 7850\n", "takes no material: the deck states it"),
     "parameter": (
         '[update]\nparameters = ["WEB.colour"]\n',
         "WEB.colour: a region has no 'colour' to update",

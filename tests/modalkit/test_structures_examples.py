@@ -68,7 +68,7 @@ REFUSED = [
     (FIRST.replace("joint_1_loose", "stiffness"), "is the model's own: the hypothesis changes nothing"),
     (FIRST.replace("joint_1_loose", "small"), "of order 12 and the model of order 228"),
     (FIRST.replace("joint 1 is loose", "lumped_mass"), "'lumped_mass' is that of an effect"),
-    (FIRST.replace("joint 1 is loose", "joint 2 is loose"), "'joint 2 is loose' stands twice"),
+    (FIRST.replace("joint 1 is loose", "joint 2 is loose"), "'joint 2 is loose' is given twice"),
     (FIRST.replace("joint 1 is loose", "joint.1"), "has a '.'"),
     (FIRST.replace('stiffness = "joint_1_loose.mtx"', 'deck = "loose.inp"'), 'for .model. type = "calculix"'),
     (FIRST.replace('stiffness = "joint_1_loose.mtx"', 'parameter = "beam_1.E"'), "needs its range"),

@@ -43,7 +43,7 @@ class Correlation(Displayed):
         it, and FRAC [-]: of the FRFs where these were given, else of the modal constants over the paired modes; empty
         where these have no level.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     frfs : CorrelatedFrfs, optional
         The FRFs themselves, measured and the model's.
     """
@@ -73,7 +73,7 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
     case : Case
         Test beside model.
     frfs : FrfSet, optional
-        Measured FRFs; the model's are computed beside them, with the identified damping where the model says none.
+        Measured FRFs; the model's are computed beside them, with the identified damping where the model gives none.
 
     Returns
     -------

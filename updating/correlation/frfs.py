@@ -45,7 +45,7 @@ def correlate_frfs(
     """Compute a model's FRFs at the points, lines, form and window of measured ones.
 
     They are solved on the reduced basis, which holds the static answers at the points. The damping is the model's
-    own, by regions and therefore coupling its modes where it says so; else the identified ratios.
+    own, by regions and therefore coupling its modes where it states so; else the identified ratios.
 
     Parameters
     ----------
@@ -92,14 +92,14 @@ def _found(frfs: FrfSet, measured: Measured) -> tuple[IntArray, IntArray, FloatA
     theirs = np.array([i for i, pair in enumerate(ends) if pair in known], dtype=int)
     if not len(theirs):
         raise StudyError(
-            f"{frfs.source}: none of these FRFs belongs to the test; hand in the FRFs of the same study"
+            f"{frfs.source}: none of these FRFs belongs to the test; give the FRFs of the same study"
         )
     ours = np.array([known[ends[i]] for i in theirs.tolist()])
     return theirs, ours, signs(frfs)[theirs]
 
 
 def _same(ends: Sequence[tuple[int, int]], own: Sequence[tuple[int, int | None]], rows: IntArray) -> bool:
-    """Tell whether these are the FRFs that were identified, in whose order the test has its constants."""
+    """Return whether these are the FRFs that were identified, in whose order the test has its constants."""
     return rows.max(initial=-1) < len(ends) and [ends[i] for i in rows.tolist()] == list(own)
 
 
@@ -111,5 +111,5 @@ def _damped(predictor: Predictor, prediction: Prediction, paired: Paired) -> tup
         return with_ratios(
             predictor, ratios
         ), "identified damping ratios, their median where no mode is paired"
-    statement = f"a damping ratio of {100 * UNKNOWN_DAMPING:g} %, as neither test nor model says any"
+    statement = f"a damping ratio of {100 * UNKNOWN_DAMPING:g} %, as neither test nor model states any"
     return with_ratios(predictor, np.array([UNKNOWN_DAMPING])), statement

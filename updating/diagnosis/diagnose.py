@@ -49,7 +49,7 @@ def diagnose(
     rng: np.random.Generator | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
-    """Say where the gap between a test and a model lies, what causes it, and how far it closes.
+    """State where the gap between a test and a model lies, what causes it, and how far it closes.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _diagnose(
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
     stated = leader if significant else found.empty.explanation
     left = remainder_of(problem, titles, stated, shrink, rules=rules)
-    _stage(progress, "weighing a cause that is in no library")
+    _stage(progress, "comparing with a cause outside the library")
     other = something_else(problem, found, rules) if significant else None
     lacks = shortcoming(
         found,
@@ -268,7 +268,7 @@ def _corrected(
 def _locate(
     problem: DiagnosisProblem, found: Search, verdict: Verdict, rules: DecisionRules = DEFAULT_RULES
 ) -> Where:
-    """Say where the cause sits; of several specimens, on the first on which all of the best explanation acts."""
+    """State where the cause sits; of several specimens, on the first on which all of the best explanation acts."""
     if not isinstance(problem, Several):
         return locate(problem.specimens[0], found, verdict=verdict, rules=rules)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
@@ -339,10 +339,10 @@ def _shrink(
 def _on_fit(
     leader: Explanation, inconsistent: Sequence[Split], *, significant: bool, fewest: int = 6
 ) -> list[str]:
-    """Return what the reader ought to know about how far the data bear the first set of causes.
+    """Return what the reader should know about how far the data bear the first set of causes.
 
-    What is left of fewer than ``fewest`` data beyond its parameters scatters by a third, so that it says little of the
-    noise.
+    What is left of fewer than ``fewest`` data beyond its parameters scatters by a third, so that it is weak evidence
+    on the noise.
     """
     notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in inconsistent[:1]]
     if not significant:
@@ -367,12 +367,12 @@ def _on_samples(found: Search) -> list[str]:
 
 
 def _notes(problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, ...], ...]) -> list[str]:
-    """Return what the reader ought to know about how the answer was reached."""
+    """Return what the reader should know about how the answer was reached."""
     notes = []
     if found.both:
         notes.append(
-            "the theory of the model leaves out shear and rotary inertia, which show beyond the noise: "
-            "every set of causes was weighed with and without them"
+            "the model's theory neglects shear and rotary inertia, which exceed the noise: every set of "
+            "causes was compared with and without them"
         )
     notes += _on_samples(found)
     for one in problem.specimens:

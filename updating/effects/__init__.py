@@ -101,7 +101,7 @@ def in_a_set(names: Sequence[str], own: Mapping[str, Effect] = LIBRARY) -> tuple
 
 
 def twin_of(names: Collection[str]) -> Twin | None:
-    """Return what one of two effects says of the other where both make one and the same change."""
+    """Return what one of two effects states about the other where both make one and the same change."""
     twins = (LIBRARY[name].twin for name in names if name in LIBRARY)
     return next((twin for twin in twins if twin and len(names) == 2 and twin.name in names), None)
 
@@ -133,7 +133,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
         If the effect is unknown, cannot act on this specimen, or takes other parameters.
     """
     if name not in LIBRARY:
-        raise StudyError(f"[[model.effect]] knows no effect {name!r}; `modalkit effects` lists them")
+        raise StudyError(f"[[model.effect]] unknown effect {name!r}; `modalkit effects` lists them")
     effect = LIBRARY[name]
     there_already = effect.fuller and predictor.spec.fuller is None and predictor.spec.outlined
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:

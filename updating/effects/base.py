@@ -1,4 +1,4 @@
-"""What every effect tells: its parameters, what it does to the model, where it sits, what it resembles."""
+"""What every effect defines: its parameters, what it does to the model, where it sits, what it resembles."""
 
 from __future__ import annotations
 
@@ -46,16 +46,16 @@ class Parameter:
     log : bool
         Whether the prior is uniform in the logarithm.
     default : float, optional
-        What is taken where an effect is put into a model and this is not told; left out, it has to be told.
+        What is taken where an effect is put into a model and this is not stated; left out, it must be stated.
     natural : tuple of {"low", "high"}
         Ends of the range that are nature's and no judgement: an edge of the structure, nothing, everything.
     or_none : bool
         Whether it may be zero beside this range, which is a form of its own.
     signed : bool
-        Whether less than nothing may be, too: then the range is that of the size, or what :meth:`Effect.values` says.
+        Whether less than nothing may be, too: then the range is that of the size, or what :meth:`Effect.values` states.
     like : str
-        Parameter whose value it takes where it is put into a model and not told, or ``nothing``; empty where it has
-        to be told.
+        Parameter whose value it takes where it is put into a model and not stated, or ``nothing``; empty where it must
+        be stated.
     scale_doubt : float
         Relative standard deviation of the scale that the value is read on, which no datum shows, as that of the force
         on a slope per newton [-].
@@ -76,11 +76,11 @@ class Parameter:
 
     @property
     def needed(self) -> bool:
-        """Whether it has to be told where the effect is put into a model."""
+        """Whether it must be stated where the effect is put into a model."""
         return self.default is None and not self.like
 
     def extreme(self, coordinate: float) -> bool:
-        """Tell whether a prior quantile lies at an end of the range that is a judgement."""
+        """Return whether a prior quantile lies at an end of the range that is a judgement."""
         at_low, at_high = coordinate < AT_END, coordinate > 1 - AT_END
         return (at_low and "low" not in self.natural) or (at_high and "high" not in self.natural)
 
@@ -157,14 +157,14 @@ class Variant:
 
 @dataclass(frozen=True)
 class Twin:
-    """An effect that makes one and the same change as another, so that no hammer test tells them apart.
+    """An effect that makes one and the same change as another, so that no hammer test separates them.
 
     Parameters
     ----------
     name : str
         The other effect.
     why : str
-        What both do, said once for the two.
+        What both do, stated once for the two.
     instead : str
         What to do in place of another test.
     """
@@ -192,7 +192,7 @@ class Effect(ABC):
     models: ClassVar[tuple[str, ...]] = ("beam", "plate")
     """Kinds of model it applies to."""
     equivalent_to: ClassVar[tuple[str, ...]] = ()
-    """Effects that some data cannot tell from it."""
+    """Effects that some data cannot separate from it."""
     labels: ClassVar[tuple[str, ...]] = ()
     """Values beside the parameters that say which points are meant, by their node numbers."""
     named: ClassVar[tuple[str, ...]] = ()
@@ -215,7 +215,7 @@ class Effect(ABC):
     undone_by: ClassVar[frozenset[Undoing]] = frozenset()
     """Tests in which it is gone."""
     twin: ClassVar[Twin | None] = None
-    """An effect that makes one and the same change; one of the two says so."""
+    """An effect that makes one and the same change; one of the two states so."""
     competes_with: ClassVar[str] = ""
     """The modeller's doubt of which it is more than that: a factor with a tolerance, or ``calibration``."""
     screened: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({})
@@ -237,7 +237,7 @@ class Effect(ABC):
         return self.repeats or bool(self.labels)
 
     def repeats_on(self, predictor: Predictor) -> bool:
-        """Tell whether it may occur twice in a set of causes of this specimen, ``repeats`` as a rule."""
+        """Return whether it may occur twice in a set of causes of this specimen, ``repeats`` as a rule."""
         return self.repeats
 
     def again(self) -> Self:
@@ -291,7 +291,7 @@ class Effect(ABC):
         return None
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell whether a parameter, all of them where none is named, changes damping alone."""
+        """Return whether a parameter, all of them where none is named, changes damping alone."""
         return False
 
     def weight(self, predictor: Predictor, values: Values) -> float:
@@ -314,7 +314,7 @@ class Effect(ABC):
         return Obstacle(Lack.MODEL, self.elsewhere.get(spec.kind, f"not for {spec.called}"))
 
     def unseen(self, predictor: Predictor) -> Obstacle | None:
-        """Return which sign of the effect a test lacks, so that it is not looked for in it, or None."""
+        """Return which sign of the effect a test lacks, so that it is not sought in it, or None."""
         return None
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:

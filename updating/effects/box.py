@@ -64,7 +64,7 @@ def shares(predictor: Predictor, values: Values, *, soft: float = 0.0) -> FloatA
 
 
 def extents(values: Values) -> tuple[float, float]:
-    """Return how far a box reaches along x and along y, as far where that is not told [m]."""
+    """Return how far a box reaches along x and along y, as far where that is not stated [m]."""
     along = float(values["extent"])
     return along, float(values.get("extent_y", along))
 
@@ -206,8 +206,7 @@ def starting_places(spec: Spec, *, along: int = 8) -> tuple[tuple[float, ...], .
 def mirror_images(spec: Spec, at: Place) -> tuple[Place, ...]:
     """Return a place and its images where the model is its own mirror image, each once [m].
 
-    What sits at one of them shifts all frequencies, and damps all modes, as at any other: shapes alone tell them
-    apart.
+    What sits at one of them shifts all frequencies, and damps all modes, as at any other: only shapes separate them.
     """
     size = (spec.length, spec.width)
     flips = [(False, True) if _symmetric(spec, axis) else (False,) for axis in range(min(spec.dim, 2))]
@@ -220,7 +219,7 @@ def mirror_images(spec: Spec, at: Place) -> tuple[Place, ...]:
 
 
 def _symmetric(spec: Spec, axis: int) -> bool:
-    """Tell whether supports, masses and regions are their own mirror image along an axis."""
+    """Return whether supports, masses and regions are their own mirror image along an axis."""
     if not spec.outlined:
         return False
     names = ("x0", "x1") if axis == 0 else ("y0", "y1")

@@ -18,7 +18,7 @@ from updating.prediction.predict import Predictor
 
 
 class Supposed(Effect):
-    """What the study says may be so, from not at all to in full, or beyond.
+    """What the study states may be so, from not at all to in full, or beyond.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Supposed(Effect):
         self.footprint = (
             "What the study's other matrices, or the other value of its parameter, make of the model."
         )
-        self.separated_by = "look there, put it right, and repeat the test"
+        self.separated_by = "inspect that place, repair it, and repeat the test"
 
     def _of(self, spec: Spec) -> Hypothesis:
         """Return the hypothesis as the study of a specimen states it."""
@@ -52,7 +52,7 @@ class Supposed(Effect):
         own = self.hypothesis
         if own.of_parameter:
             return (Parameter("value", own.unit, own.low, own.high, "as the study states it", natural=EDGES),)
-        why = "as the study states it: 0 is the model as it stands, 1 all the way"
+        why = "as the study states it: 0 is the unchanged model, 1 all the way"
         return (Parameter("amount", "-", own.low, own.high, why, natural=EDGES),)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:

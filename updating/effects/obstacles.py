@@ -19,7 +19,7 @@ class Lack(Enum):
     DATA = "data"
     """The test did not measure what would show it."""
     EXPECTATION = "expectation"
-    """Neither model nor baseline says what would be there without it."""
+    """Neither model nor baseline states what would be there without it."""
     ONE_TEST = "one test"
     """It differs from test to test, and several are diagnosed together."""
 
@@ -48,19 +48,19 @@ class Obstacle:
 
 
 def damping_obstacle(predictor: Predictor) -> Obstacle | None:
-    """Return why nothing can be said of what changes the damping, or None."""
+    """Return why changes of the damping cannot be examined, or None."""
     if not np.isfinite(predictor.measured.damping).any():
         return Obstacle(Lack.DATA, "no damping was measured")
     if predictor.expects_damping:
         return None
-    return Obstacle(Lack.EXPECTATION, "neither model nor baseline says what damping to expect")
+    return Obstacle(Lack.EXPECTATION, "neither model nor baseline states the expected damping")
 
 
 def shape_obstacle(measured: Measured, least: int) -> Obstacle | None:
-    """Return why so few points do not tell one of them apart, or None."""
+    """Return why so few points do not separate one of them, or None."""
     moved = measured.hit if measured.roving == "hit" else measured.seen
     count = len(np.unique(moved[moved >= 0]))
     if count >= least:
         return None
-    what = "it takes shapes at {needed} points or more to tell, found {found}"
+    what = "shapes at {needed} points or more are needed, found {found}"
     return Obstacle(Lack.DATA, what, (("needed", least), ("found", count)))

@@ -62,7 +62,7 @@ def regions_meant(spec: Spec, values: Values) -> tuple[int, ...]:
         return tuple(i for i, name in enumerate(names) if name == stated)
     if isinstance(stated, int | float) and stated == int(stated) and 0 <= stated < len(names):
         return (int(stated),)
-    raise StudyError(f"region = {stated!r} is none of the model's: {', '.join(dict.fromkeys(names))}")
+    raise StudyError(f"region = {stated!r} is not one of the model's: {', '.join(dict.fromkeys(names))}")
 
 
 def region_centre(predictor: Predictor, values: Values) -> Place:
@@ -90,7 +90,9 @@ def one_of(known: Iterable[Named], values: Values, label: str) -> Named:
     found = {one.name: one for one in known}
     stated = values.get(label)
     if stated not in found:
-        raise StudyError(f"{label} = {stated!r} is none of the model's: {', '.join(found) or 'it has none'}")
+        raise StudyError(
+            f"{label} = {stated!r} is not one of the model's: {', '.join(found) or 'it has none'}"
+        )
     return found[str(stated)]
 
 
@@ -104,7 +106,7 @@ def way(values: Values, label: str) -> int:
     """
     stated = values.get(label)
     if stated not in WAYS:
-        raise StudyError(f"{label} = {stated!r} is no direction; use {', '.join(WAYS)}")
+        raise StudyError(f"{label} = {stated!r} is not a direction; use {', '.join(WAYS)}")
     return WAYS.index(str(stated))
 
 

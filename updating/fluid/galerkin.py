@@ -23,7 +23,7 @@ studies of one specimen do. Twice as many hold twice the memory."""
 
 
 REACH = 9.0
-"""Wavenumber times distance beyond which a flow knows nothing of a surface or a bottom: tanh is one to 3e-8 [-]."""
+"""Wavenumber times distance beyond which a flow is not affected by a surface or a bottom: tanh is one to 3e-8 [-]."""
 
 
 @lru_cache(maxsize=KEPT)
@@ -88,8 +88,8 @@ def energy_matrix(
 
 def _alike(along: JumpAxis, across: JumpAxis) -> InputError:
     return InputError(
-        f"added mass: {along.terms} x {across.terms} functions cannot be told apart in this domain; "
-        "ask for fewer terms"
+        f"added mass: {along.terms} x {across.terms} functions cannot be separated in this domain; ask for "
+        "fewer terms"
     )
 
 

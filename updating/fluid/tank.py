@@ -15,10 +15,10 @@ import numpy as np
 from acquisition.arrays import FloatArray
 
 NEAREST = 0.1
-"""Least distance that the table knows, over the shorter side [-]. At half of it one node more is needed."""
+"""Least distance in the table, over the shorter side [-]. At half of it one node more is needed."""
 
 TURN = 0.2
-"""Distance at which nearness is a half, c above [-]. Among 0.15 to 0.5 the errors that ``NODES`` tells are least here,
+"""Distance at which nearness is a half, c above [-]. Among 0.15 to 0.5 the errors given at ``NODES`` are least here,
 on a beam of 12 : 1 and on a plate of 2 : 1."""
 
 NODES = 6
@@ -76,7 +76,7 @@ class TankTable:
         return cls(side, surfaces, bottoms, shares, right[kept].reshape(-1, *solved.shape[2:]))
 
     def knows(self, surface: float, bottom: float) -> bool:
-        """Tell whether two distances are in the table [m]."""
+        """Return whether two distances are in the table [m]."""
         free = ((surface, self.surfaces), (bottom, self.bottoms))
         return all(far >= NEAREST * self.side for far, nodes in free if len(nodes) > 1)
 

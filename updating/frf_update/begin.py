@@ -1,7 +1,7 @@
 """Where a stage may begin whose peaks do not overlap: where the identified frequencies put its parameters.
 
-An FRF says little of a resonance that lies many widths away, and the misfit has hollows at every chance meeting of
-peaks. The frequencies themselves change smoothly with the parameters (paper A, Eqs. 15-25), and lead near.
+An FRF is little affected by a resonance that lies many widths away, and the misfit has hollows at every chance meeting
+of peaks. The frequencies themselves change smoothly with the parameters (paper A, Eqs. 15-25), and lead near.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def bootstrap_frf_update(
     """
     if n < FEWEST:
         raise StudyError(
-            f"bootstrap: {n} draws tell nothing of an interval; ask for {FEWEST} or more, better 100"
+            f"bootstrap: {n} draws are too few for an interval; ask for {FEWEST} or more, better 100"
         )
     specimen, _, steps = solve_stages(case, frfs, parameters, stages, lines)
     found = report(specimen, frfs, steps)

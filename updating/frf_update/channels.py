@@ -30,7 +30,7 @@ OPPOSITE = -0.5
 """Mean cosine of the phase to the model's under which an FRF points the wrong way, if the others agree [-]."""
 
 AUDIBLE = 9.0
-"""Power over noise of a line that tells something, of the measured or the computed FRF [-]."""
+"""Power over noise of an informative line, of the measured or the computed FRF [-]."""
 
 
 def odd(frfs: MeasuredFrfs, predictor: Predictor, state: State) -> dict[int, str]:

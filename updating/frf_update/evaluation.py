@@ -40,7 +40,7 @@ class Evaluation:
     receptance : (n_frf, n_lines) complex array
         The model's FRFs, gain included [m/N].
     laplace : (n_lines,) complex array
-        Where in the Laplace plane, a window that only the model knows of included [1/s].
+        Where in the Laplace plane, a window that only the model has included [1/s].
     gain : (n_lines,) complex array
         Factor of the measured level over the true one: the calibration's, and what such a window does to a motion
         that was integrated as if there were none [-].
@@ -113,7 +113,7 @@ class Change:
     log_gain : float
         Derivative of the logarithm of the gain [-].
     decay : float
-        Derivative of the decay of a window that only the model knows of [1/s].
+        Derivative of the decay of a window that only the model has [1/s].
     """
 
     matrices: Matrices

@@ -18,7 +18,7 @@ def expand(at: Evaluation, ends: Columns, measured: ComplexArray) -> ComplexArra
 
     The equation needs the measured column at every degree of freedom, and a test gives it at a few. Of all
     motions that agree with the measurement the one is taken whose force residual Z x - f is least (in the
-    coordinates of the basis, which is orthonormal in the nominal mass): where the test says nothing the model
+    coordinates of the basis, which is orthonormal in the nominal mass): where the test has no data the model
     is believed, and as little force as possible is invented.
 
     Parameters

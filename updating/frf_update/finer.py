@@ -1,4 +1,4 @@
-"""The reduced model made anew where the parameters have gone, until it says what the full one says."""
+"""The reduced model made anew at the current parameters, until it agrees with the full one."""
 
 from __future__ import annotations
 
@@ -67,9 +67,9 @@ def basis_at(reduced: Reduced, state: State, loads: FloatArray) -> Reduced:
     Parameters
     ----------
     reduced : Reduced
-        The model on the basis it had, which says how many modes to take.
+        The model on the basis it had, which determines how many modes to take.
     state : State
-        Where; only its factors are looked at.
+        Where; only its factors are used.
     loads : (n_dofs, n) array
         Forces whose static answers join [-].
     """

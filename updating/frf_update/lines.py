@@ -1,8 +1,8 @@
-"""Which frequency lines to compare: few that carry what all of them say.
+"""Which frequency lines to compare: few that carry the information of all.
 
 Paper B chooses its updating frequencies without a systematic criterion. Here they are chosen one by one so that the
-determinant of the information on the parameters grows most (D-optimal design; Fedorov 1972), on the model as it
-stands, with the noise and the discrepancy counted: a peak that the model cannot follow is no information.
+determinant of the information on the parameters grows most (D-optimal design; Fedorov 1972), on the unchanged model,
+with the noise and the discrepancy counted: a peak that the model cannot follow is no information.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from acquisition.errors import StudyError
 from updating.frf_update.stage import Stage
 
 CANDIDATES = 250
-"""Fewest lines looked at, spread evenly over the band."""
+"""Fewest lines examined, spread evenly over the band."""
 
 BESIDE = 4
-"""Lines on either side of each measured resonance that are looked at too."""
+"""Lines on either side of each measured resonance that are examined too."""
 
 COUNT = 100
-"""Lines chosen where the user says nothing."""
+"""Lines chosen where the user states none."""
 
 
 def choose_lines(
@@ -35,7 +35,7 @@ def choose_lines(
     stage : Stage
         The stage on all lines.
     theta : (p,) array
-        Coordinates at which the model is looked at.
+        Coordinates at which the model is evaluated.
     discrepancy : float
         Relative discrepancy of the model [-].
     lines : int, sequence of float, optional
@@ -68,8 +68,8 @@ def choose_lines(
 def _candidates(frequency: FloatArray, resonances: FloatArray, count: int) -> IntArray:
     """Return lines spread evenly over the band, and those about some resonances, which an even spread may miss.
 
-    Where damping alone is asked for it stands there. Of mass and stiffness a line right on a peak says most if
-    the model can follow it, and misleads most if not.
+    Where damping alone is asked for it stands there. Of mass and stiffness a line right on a peak is most informative
+    if the model can follow it, and misleads most if not.
     """
     even = np.round(np.linspace(0, len(frequency) - 1, min(count, len(frequency)))).astype(int)
     nearest = np.abs(frequency[:, None] - resonances).argmin(axis=0)
@@ -82,8 +82,8 @@ def _nearest(frequency: FloatArray, wanted: FloatArray) -> IntArray:
     outside = (wanted < frequency[0] - step) | (wanted > frequency[-1] + step)
     if outside.any() or not len(wanted):
         raise StudyError(
-            f"[update] lines: {wanted[outside][:1].tolist() or 'an empty list'} Hz is none of the band from "
-            f"{frequency[0]:g} to {frequency[-1]:g} Hz"
+            f"[update] lines: {wanted[outside][:1].tolist() or 'an empty list'} Hz is outside the band "
+            f"from {frequency[0]:g} to {frequency[-1]:g} Hz"
         )
     return np.unique(np.abs(frequency[:, None] - wanted).argmin(axis=0))
 

@@ -28,7 +28,7 @@ from updating.update.parameters.parameters import ModelParameter
 from updating.update.statistics.determined import correlations
 
 NOTEWORTHY = 0.01
-"""Discrepancy that the user ought to know of [-]."""
+"""Discrepancy from which a warning is given [-]."""
 
 
 def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> FrfUpdate:
@@ -220,11 +220,13 @@ def _warnings(specimen: Specimen, last: Sequence[Step], exact: bool) -> list[str
             )
         if step.solved.discrepancy > NOTEWORTHY:
             found.append(
-                f"stage {i}: the updated model misses the FRFs by {percent(100 * step.solved.discrepancy)}, which no "
-                "noise explains; the standard deviations allow for it"
+                f"stage {i}: the updated model misses the FRFs by "
+                f"{percent(100 * step.solved.discrepancy)}, more than noise explains; the standard "
+                "deviations include it"
             )
     if not exact:
         found.append(
-            "an effect is known to the reduced model alone: the frequencies after the update are its own"
+            "an effect exists only in the reduced model: the frequencies after the update are those of "
+            "the reduced model"
         )
     return found

@@ -43,7 +43,7 @@ FRESH = 1e-3
 """The same of a stage that is taken up again when others have moved [-]."""
 
 CYCLES = 6
-"""How often the stages are gone through at most: from the second time on each knows what the others have found."""
+"""How often the stages are gone through at most: from the second time on each uses the results of the others."""
 
 BASES = 3
 """Most reduced bases that are made anew at the solution."""
@@ -52,7 +52,7 @@ FOLLOWED = 0.02
 """Discrepancy under which measured and computed peaks lie within their widths of each other [-]."""
 
 ODD = 0.05
-"""Discrepancy from which on an FRF is looked for that is unlike the others [-]."""
+"""Discrepancy from which on an FRF unlike the others is sought [-]."""
 
 ODD_GAIN = 0.5
 """Share of the discrepancy that may be left for such an FRF to be left out [-]."""
@@ -61,10 +61,10 @@ APART = 0.3
 """Discrepancy beyond which peaks may have met by chance, and another beginning is tried [-]."""
 
 STRANGE = 0.02
-"""Relative width about a resonance that the identification does not know, of which only damping is not asked [-]."""
+"""Relative width about a resonance that the identification lacks, of which only damping is not asked [-]."""
 
 EDGE = 1.1
-"""Resonances up to so many times the highest line are looked at [-]."""
+"""Resonances up to so many times the highest line are examined [-]."""
 
 REST = 0.1
 """Change from one cycle to the next under which parameters rest, in standard deviations [-]."""
@@ -83,7 +83,7 @@ def update_frfs(
     Paper B, Eqs. 7-13: the first stage settles mass and stiffness without regard to damping, the second the
     damping of each region, and again in turn until they rest. Where the model then follows the FRFs closely,
     the parameters of all stages are turned together at the end. Eq. 10 is solved by singular values, those
-    cut off that drown in the noise. The *nominal* model is updated; a baseline of the case plays no part.
+    cut off that are below the noise. The *nominal* model is updated; a baseline of the case plays no part.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def update_frfs(
     stages : sequence of sequences of str, optional
         The stages, in place of ``parameters``.
     lines : int or sequence of float, optional
-        How many frequency lines each stage compares, or which [Hz]; left out, 100 chosen for what they tell.
+        How many frequency lines each stage compares, or which [Hz]; left out, 100 chosen for their information.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def update_frfs(
     Raises
     ------
     StudyError
-        If a parameter does not exist, stands twice, or there are more of them than data.
+        If a parameter does not exist, is given twice, or there are more of them than data.
     EstimationError
         If no measured mode has a partner.
     """
@@ -196,7 +196,7 @@ def _go_through(
 
 
 def entangled(parameter_sets: Sequence[ParameterSet]) -> bool:
-    """Tell whether more than one stage turns mass or stiffness, so that one can only rest where the others do."""
+    """Return whether more than one stage turns mass or stiffness, so that one can only rest where the others do."""
     return (
         sum(not all(k.damps for k in parameter_set.model_parameters) for parameter_set in parameter_sets) > 1
     )
@@ -227,7 +227,7 @@ def _doubled(lines: int | Sequence[float]) -> int | Sequence[float]:
 
 
 def _at_rest(steps: Sequence[Step], count: int) -> bool:
-    """Tell whether the last cycle moved any parameter beyond a share of its standard deviation."""
+    """Return whether the last cycle moved any parameter beyond a share of its standard deviation."""
     if len(steps) < 2 * count:
         return False
     for old, new in zip(steps[-2 * count : -count], steps[-count:], strict=True):
@@ -348,7 +348,7 @@ def _stage(specimen: Specimen, frfs: MeasuredFrfs, parameter_set: ParameterSet, 
 
 
 def _unmatched(specimen: Specimen, frfs: MeasuredFrfs, state: State) -> FloatArray:
-    """Return where on the measured axis the model has resonances that the identification does not know [Hz]."""
+    """Return where on the measured axis the model has resonances that the identification lacks [Hz]."""
     prediction = specimen.predictor.predict(state)
     partner = match(specimen.measured, prediction, specimen.order)
     own = np.delete(prediction.frequency, partner)

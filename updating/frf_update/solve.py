@@ -1,4 +1,4 @@
-"""The iteration of a stage: Eq. 10 solved by singular values, cut off where they drown in the noise."""
+"""The iteration of a stage: Eq. 10 solved by singular values, cut off where they are below the noise."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ LARGEST = 1.0
 """Largest step of a parameter, in its doubts [-]."""
 
 DROWNED = 1.0
-"""Singular values under this, in doubts per standard deviation, say less than was known before [-]."""
+"""Singular values under this, in doubts per standard deviation, are weaker than the prior knowledge [-]."""
 
 CONVERGED = 1e-6
 """Increments under this share of a parameter's doubt end an iteration [-]."""
 
 ROUGHLY = 1e-2
-"""The same while the discrepancy is still being looked for [-]."""
+"""The same while the discrepancy is still being estimated [-]."""
 
 HALFWAY = 0.7
 """A step that brings the misfit under this share of what it was needs no rival [-]."""

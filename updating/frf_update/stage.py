@@ -46,7 +46,7 @@ class Stage:
     resonances, widths : (n,) arrays
         Where resonances are left alone [Hz], and how wide [-]: all measured ones and the model's own where nothing is
         known of the damping and this stage does not settle it, and where it settles nothing else those of the
-        model that the identification does not know.
+        model that the identification lacks.
     warp : (n_lines,) array
         Factor on the frequency of each line at which the model is evaluated, so that measured and computed
         peaks fall together where only damping is asked for [-].
@@ -187,7 +187,7 @@ def modal_power(at: Evaluation, ends: Columns) -> FloatArray:
 def modal_shares(at: Evaluation, ends: Columns) -> tuple[FloatArray, ComplexArray]:
     """Return constants (n_frf, r) [1/kg] and dynamic factors (r, n_lines) [s^2] whose product is each mode's share.
 
-    The damping that couples modes is left out: shares say how large an error may be, not what it is.
+    The damping that couples modes is left out: shares state how large an error may be, not what it is.
     """
     values, vectors = at.matrices.undamped
     viscous = np.einsum("ir,ij,jr->r", vectors, at.matrices.viscous, vectors, optimize=True)

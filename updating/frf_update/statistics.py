@@ -18,7 +18,7 @@ from updating.prediction.prediction import Prediction
 from updating.update.data.specimen import Specimen
 
 WEAK = 0.2
-"""Modal constants under this share of a mode's largest say little of relative errors [-]."""
+"""Modal constants under this share of a mode's largest are weak evidence on relative errors [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +28,9 @@ class StageStatistics:
     Parameters
     ----------
     covariance : (p, p) array
-        Of the coordinates; the variance of the doubt where the data say less.
+        Of the coordinates; the variance of the doubt where the data determine less.
     undetermined : (p,) bool array
-        Parameters of which the data say less than was known before, and that could as well not be there.
+        Parameters that the data determine less than the prior knowledge, and that could as well not be there.
     chi2 : float
         Sum of squared residuals over the variance of the noise, real and imaginary parts [-].
     count : int

@@ -14,7 +14,7 @@ from updating.prediction.matching import match
 from updating.update.data.specimen import Specimen
 
 UNTOLD_RATIO = 0.005
-"""Damping ratio of modes of which the test says none [-]."""
+"""Damping ratio of modes of which the test states none [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ def identified_ratios(specimen: Specimen) -> tuple[float, ...]:
     """Return the identified damping ratios in the order of the model's modes, their median where there is none.
 
     A stage that leaves damping alone compares FRFs with these in the model, as paper A does for its figures: a peak
-    ten times too high for want of damping says nothing of mass and stiffness.
+    ten times too high for want of damping gives no information on mass and stiffness.
     """
     prediction = specimen.predictor.predict()
     partner = match(specimen.measured, prediction, specimen.order)

@@ -1,4 +1,4 @@
-"""What every kind of data tells beside a state of the model: residual, noise, and what may explain the residual."""
+"""What every kind of data defines beside a state of the model: residual, noise, and what may explain the residual."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Setting:
     tolerances : Tolerances
         The modeller's doubts.
     names : tuple of str
-        What all data doubt alike: factors with a tolerance that the model knows, masses and places of bodies.
+        What all data doubt alike: factors with a tolerance that the model has, masses and places of bodies.
     sigmas : (n_names,) array
         Their standard deviations [-, of places m].
     nominal : Prediction
@@ -60,7 +60,7 @@ class Setting:
     missed : Prediction
         That of the modes that the model has and the test has not.
     before : Before, optional
-        What a baseline has already said.
+        What a baseline has already determined.
     """
 
     predictor: Predictor
@@ -74,7 +74,7 @@ class Setting:
 
     @cached_property
     def scatter(self) -> HitScatter | None:
-        """What the scatter of the hits is made of; None where they do not tell."""
+        """What the scatter of the hits is made of; None where they do not determine it."""
         return hit_scatter(self.measured, self.nominal)
 
 

@@ -1,4 +1,4 @@
-"""What a baseline test has already said: of the tolerances, and of how the model's shapes miss.
+"""What a baseline test has already determined: the tolerances, and how the model's shapes deviate.
 
 The same specimen was tested before the effect was there. What tolerances did to that test they do to this one,
 so only the difference of the sensitivities is left in doubt; and what the model's modal constants missed then
@@ -64,7 +64,7 @@ class Before:
     Parameters
     ----------
     predictor : Predictor
-        The corrected model, looked at from the points of the test; the correction is its last addition.
+        The corrected model, observed from the points of the test; the correction is its last addition.
     measured : Measured
         The test.
     baseline : Measured
@@ -86,7 +86,7 @@ class Before:
 
     @cached_property
     def _corrected(self) -> Predictor:
-        """The corrected model, looked at from the points of the baseline."""
+        """The corrected model, observed from the points of the baseline."""
         return self.predictor.for_test(self.baseline, (*self.additions, self.predictor.additions[-1]))
 
     @cached_property
@@ -97,7 +97,7 @@ class Before:
 
     @cached_property
     def scatter(self) -> HitScatter | None:
-        """What the scatter of the baseline's hits is made of; None where they do not tell."""
+        """What the scatter of the baseline's hits is made of; None where they do not determine it."""
         return hit_scatter(self.baseline, self.prediction)
 
     @cached_property
@@ -106,7 +106,9 @@ class Before:
         return own_variance(self.baseline, self.scatter)
 
     def level_errors(self, now: Prediction) -> FloatArray:
-        """Return how far errors of the baseline's poles stretch what it says of each present mode, (n_modes,) [-]."""
+        """Return how far errors of the baseline's poles stretch what it determines of each present mode, (n_modes,)
+        [-].
+        """
         return np.asarray(np.sqrt(self.shares(now) @ level_errors(self.baseline, self.scatter) ** 2))
 
     @cached_property
@@ -129,7 +131,8 @@ class Before:
         return np.asarray(gone / 2 * np.median(self._correction))
 
     def _variance(self, now: Prediction) -> FloatArray:
-        """Return the variance of what the baseline's modes say of ln f of the present ones, (n_modes, n_baseline) [-].
+        """Return the variance of what the baseline's modes determine of ln f of the present ones, (n_modes,
+        n_baseline) [-].
 
         It holds identification, re-mounting, and of that part of the correction which is no common factor what the
         change of the modes leaves in doubt.
@@ -198,7 +201,7 @@ class Before:
         return np.sum(shares * self._variance(now), axis=1) + beyond, known
 
     def damping(self, now: Prediction) -> FloatArray:
-        """Return the variance of what the baseline's modes say of ln zeta of the present ones, (n_modes,) [-]."""
+        """Return the variance of what the baseline's modes determine of ln zeta of the present ones, (n_modes,) [-]."""
         base, stated = self.baseline, np.full(len(self.baseline.damping), np.nan)
         np.divide(base.damping_sigma, base.damping, out=stated, where=base.damping > 0)
         return np.asarray(self.shares(now) @ np.nan_to_num(stated, nan=UNSTATED_DAMPING_NOISE) ** 2)
@@ -222,7 +225,7 @@ class Before:
         return same_rows(replace(self.measured, seen=true.seen, hit=true.hit), self.baseline)
 
     def shapes(self, now: Prediction, state: State) -> Missed:
-        """Return what the baseline says the present constants miss.
+        """Return the misses of the present constants according to the baseline.
 
         It is the structure that the model misses, so that the present measurement reads what is missed as it reads the
         rest: at the points where it really is, with its own signs and levels.

@@ -1,6 +1,6 @@
 """Modes that are close: what scatters their frequencies turns their shapes into each other.
 
-A change dK that the model does not know has elements between modes as large as those on the diagonal, which shift the
+A change dK that the model lacks has elements between modes as large as those on the diagonal, which shift the
 frequencies. These scatter by a relative s, so a shape takes up of another one by 1 sigma 2 s f_i f_j / (f_j^2 - f_i^2)
 (perturbation of first order, as of Fox and Kapoor, AIAA Journal 6, 2426, 1968): of modes 1 % apart that scatter by
 0.05 %, 5 % of it. So it does of a mode that the test has not, because its sensor sits at a node of it.
@@ -71,7 +71,7 @@ class CloseModes:
         count = len(test.frequency)
         i, j = np.triu_indices(count, 1, count + len(lost))
         both = j < count
-        # how far a missed mode is from another one the model alone says, of both
+        # how far a missed mode is from another one is known from the model only, for both
         f = np.where(both, test.frequency[i], before.frequency[i])
         g = np.concatenate([test.frequency, lost])[j]
         scatter = np.concatenate([test.repeatability**2 + self.further, np.zeros(len(lost))])

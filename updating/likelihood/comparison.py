@@ -48,7 +48,7 @@ class Block:
     idealised : (n,) array, optional
         What of the variance a candidate's idealisation adds, mode by mode, at the most [-]; left out, nothing.
     idle : (n,) bool array, optional
-        Which data the state says nothing of; left out, none.
+        Which data the state does not predict; left out, none.
     unseen : (n,) array, optional
         What of the variance is an error that no scatter shows, at the most [-]; left out, nothing.
     judged : (n,) array, optional
@@ -102,7 +102,7 @@ class Comparison:
     idealised : (n,) array, optional
         What of the variance the candidate's idealisation adds, at the most [-]; left out, its size is settled.
     idle : (n,) bool array, optional
-        Which data the state says nothing of, so that none of them fits or does not; left out, none.
+        Which data the state does not predict, so that none of them fits or does not; left out, none.
     unseen : (n,) array, optional
         What of the variance is an error that no scatter shows, at the most [-]; left out, its size is settled.
     judged : (n,) array, optional
@@ -150,7 +150,7 @@ class Comparison:
 
     @property
     def stated(self) -> BoolArray:
-        """Which data the state says something of, (n,)."""
+        """Which data the state predicts, (n,)."""
         return np.ones(len(self.residual), dtype=bool) if self.idle is None else ~self.idle
 
     def noise(self, scale: float) -> FloatArray:
@@ -266,7 +266,7 @@ def assemble(
 
 
 def _filled(parts: Sequence[tuple[_Array | None, int]], nothing: float) -> _Array | None:
-    """Return what parts of the data say in one, ``nothing`` where one says nothing; None where all do.
+    """Return what parts of the data say in one, ``nothing`` where one has no prediction; None where all have.
 
     Each part comes with the number of its data.
     """

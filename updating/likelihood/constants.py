@@ -119,7 +119,9 @@ class Constants(Quantity):
         )
 
     def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, Missed]:
-        """Return predicted constants and their sensitivities, what a baseline has said put in, and what that is."""
+        """Return predicted constants and their sensitivities, what a baseline has determined included, and what that
+        is.
+        """
         now = view.now
         if self.setting.before is None:
             nothing = np.zeros_like(now.constants)

@@ -39,7 +39,7 @@ class Dampings(Quantity):
 
     @property
     def doubt(self) -> float:
-        """Doubt in the expected damping: a baseline that measured it knows better than a modeller [-]."""
+        """Doubt in the expected damping: a baseline that measured it is more accurate than an estimate [-]."""
         stated = self.setting.tolerances.damping
         return stated if self.setting.before is None else min(stated, DAMPING_REPEATABILITY)
 

@@ -114,7 +114,7 @@ def _joined(found: Marginal, apart: Sequence[Apart], size: int) -> Marginal:
 
 
 def _sound(comparison: Comparison) -> bool:
-    """Tell whether a prediction is finite and no sensitivity is beyond all measure."""
+    """Return whether a prediction is finite and no sensitivity is beyond all measure."""
     whole = np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()
     return bool(
         whole

@@ -44,16 +44,16 @@ class HitScatter:
 def own_variance(measured: Measured, scatter: HitScatter | None) -> FloatArray:
     """Return the variance of each constant that no other shares, (n_frf, n_modes) [1/kg^2].
 
-    Where the hits tell it is the white part of their scatter, widened to what the imaginary parts show, which are zero
-    for real modes, and what errors of neighbours' poles add to the shape.
+    Where the hits determine it, it is the white part of their scatter, widened to what the imaginary parts show, which
+    are zero for real modes, and what errors of neighbours' poles add to the shape.
 
     Parameters
     ----------
     measured : Measured
         The test.
     scatter : HitScatter or None
-        What its scatter is made of; None where the hits do not tell: all of the standard deviation is each constant's
-        own.
+        What its scatter is made of; None where the hits do not determine it: all of the standard deviation is each
+        constant's own.
     """
     if scatter is None:
         return measured.constants_sigma**2
@@ -66,7 +66,7 @@ def own_variance(measured: Measured, scatter: HitScatter | None) -> FloatArray:
 def level_errors(measured: Measured, scatter: HitScatter | None) -> FloatArray:
     """Return by how much the error of each mode's pole stretches all its constants, relative (1 sigma), (n_modes,) [-].
 
-    Nothing where the hits do not tell what else there is: then it is in the standard deviation of each.
+    Nothing where the hits do not determine it what else there is: then it is in the standard deviation of each.
     """
     if scatter is None or measured.shared is None:
         return np.zeros(measured.constants.shape[1])
@@ -84,7 +84,7 @@ def _beside(measured: Measured) -> tuple[FloatArray, FloatArray]:
 
 
 def hit_scatter(measured: Measured, prediction: Prediction) -> HitScatter | None:
-    """Return what the scatter of a test's hits is made of, or None where the hits do not tell.
+    """Return what the scatter of a test's hits is made of, or None where the hits do not determine them.
 
     Parameters
     ----------

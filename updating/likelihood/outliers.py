@@ -1,9 +1,9 @@
 """Data that are worse than thought, at a price: one kind of data of a mode, a mode, or a channel; or a tolerance.
 
-Every test has something that nobody stated: a mode that is no mode of this body, a sensor that hung loose, one
-frequency that drifted. Gaussian noise makes of it an argument against every true explanation. So any group of
-data may be an *outlier*: its noise is so many times what is stated. The prior says how rarely; the data, by how
-much better everything else fits, whether. Each choice of outliers is Gaussian again.
+Every test has something that is not stated: a mode that is no mode of this body, a sensor that hung loose, one
+frequency that drifted. Gaussian noise makes of it an argument against every true explanation. So any group of data may
+be an *outlier*: its noise is so many times what is stated. The prior states how rarely; the data determine by how much
+better everything else fits, whether. Each choice of outliers is Gaussian again.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Outlier:
         return self.channel in SHAPE
 
     def about_the_same(self, other: Outlier) -> bool:
-        """Tell whether another one is of the same data, or tolerance: nothing is worse than thought twice."""
+        """Return whether another one is of the same data, or tolerance: nothing is worse than thought twice."""
         return replace(self, scale=other.scale) == other
 
     def scaled(self) -> list[Outlier]:
@@ -74,7 +74,7 @@ def log_price(outliers: Sequence[Outlier]) -> float:
 
 
 def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Comparison:
-    """Return a comparison with the noise of outliers as much larger as they say."""
+    """Return a comparison with the noise of outliers as much larger as they imply."""
     if not outliers:
         return comparison
     worse, nuisance = np.ones(len(comparison.variance)), comparison.nuisance.copy()

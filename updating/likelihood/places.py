@@ -52,8 +52,8 @@ class Places:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the shapes at sensor and force, (n_frf, n_modes); where FRFs share one of them, as it was measured.
 
-        Near a node the model says little of how far a mode moves there, for it is the place that decides, and the other
-        ends' errors go with that.
+        Near a node the model hardly determines how far a mode moves there, for it is the place that decides, and the
+        other ends' errors go with that.
         """
         test = self.setting.measured
         ends = {"seen": now.seen, "hit": now.hit}
@@ -79,8 +79,8 @@ class Places:
     def _loose(self) -> FloatArray:
         """Doubt in where points lie along the model's axes, of beams one, of plates two [m].
 
-        It is 0 where one end is clamped and they keep their distance from the other. Else nobody says from which end
-        they were measured: half of the doubt in the size. A baseline has the same.
+        It is 0 where one end is clamped and they keep their distance from the other. Else it is not stated from which
+        end they were measured: half of the doubt in the size. A baseline has the same.
         """
         spec, tolerances = self.setting.predictor.spec, self.setting.tolerances.factors
         if self.setting.before is not None or not spec.outlined:

@@ -3,7 +3,7 @@
 The same data stand beside every state, or their evidence could not be compared. Beside a state without the mode its
 frequency and damping may be any, and its shape is a mixture of those of the model's modes next to it: it is a twin of
 one of them, a mode of what the structure hangs on, or in a direction that the model leaves out. What the mode adds to
-the evidence of a state that has it is that it knew better.
+the evidence of a state that has it is that it was right.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class _Rows:
         Change per standard deviation of nuisances of this mode alone: its level, and what it takes up of close modes;
         of one that is none in particular, shares of the modes next to it [-].
     idle : bool
-        Whether the state says nothing of it.
+        Whether the state does not predict it.
     idealised : float
         What of the variance of ln f a candidate's idealisation adds, at the most [-].
     """

@@ -51,7 +51,7 @@ class Localiser(ABC):
         Returns
         -------
         (n_regions,) array
-            Not negative, the greater the more suspect; all zero where the data say nothing [-].
+            Not negative, the greater the more suspect; all zero where the data are not informative [-].
         """
 
     def obstacle(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> str | None:

@@ -33,7 +33,7 @@ AGAIN = (-1.5, 0.0, 1.5)
 
 @dataclass(frozen=True, eq=False)
 class RegionPosterior:
-    """What the data say of a change of one region.
+    """Evidence of the data for a change of one region.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class RegionPosterior:
 
 
 def compare_regions(problem: SpecimenProblem, kinds: tuple[Kind, ...] = KINDS) -> RegionPosterior:
-    """Weigh a change of every region.
+    """Evaluate a change of every region.
 
     Parameters
     ----------
@@ -112,8 +112,8 @@ class RegionEvidence(Localiser):
         "Needs frequencies, shapes to separate mirrored regions, and tolerances as they are."
     )
     misleads: ClassVar[str] = (
-        "Misleads where more than one region is wrong, or a support, a fluid or the measurement: that is put into the "
-        "region that resembles it most."
+        "Misleads where more than one region is wrong, or a support, a fluid or the measurement: that is "
+        "attributed to the region with the most similar effect."
     )
     source: ClassVar[str] = "Beck and Katafygiotis (1998), J. Eng. Mech. 124, applied region by region"
     kinds: ClassVar[tuple[Kind, ...]] = KINDS

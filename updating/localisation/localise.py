@@ -79,7 +79,7 @@ class Localisation(Displayed):
     not_used : mapping of str to str
         Why each other method that was asked for cannot be used.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     """
 
     title: str
@@ -161,7 +161,7 @@ def localise(
     title: str = "",
     warnings: Sequence[str] = (),
 ) -> Localisation:
-    """Say which region of a model each method suspects.
+    """State which region of a model each method suspects.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ class ConstitutiveError(Localiser):
 
     The two fields are those for which the energy of their difference, beside the distance from the measured
     components, is least; then the energy of that difference in each region, relative to the energy of the mode,
-    says how far its law is broken.
+    measures how far its law is broken.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ class ConstitutiveError(Localiser):
     )
     needs: ClassVar[str] = "Needs shapes at a few points, and a model whose mass is right."
     misleads: ClassVar[str] = (
-        "Misleads where the whole model is off (E, length): that is put into regions of high strain energy, as is "
-        "noise."
+        "Misleads where the whole model is off (E, length): that is attributed to regions of high strain "
+        "energy, as is noise."
     )
     source: ClassVar[str] = "Ladeveze, Reynier and Nedjar (1994); Deraemaeker, Ladeveze and Leconte (2002)"
 

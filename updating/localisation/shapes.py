@@ -50,7 +50,7 @@ class Shapes:
 
 
 def shapes_of(problem: SpecimenProblem) -> Shapes:
-    """Return the measured shapes point by point, and what the model says of them."""
+    """Return the measured shapes point by point, and the model's prediction of them."""
     predictor, test = problem.predictor, problem.measured
     stiffness, mass = predictor.reduced.matrices(predictor.base)
     rows = predictor.point_rows(NOMINAL)
@@ -121,7 +121,7 @@ def serep(shapes: Shapes) -> FloatArray:
 
 
 def dynamic(shapes: Shapes, *, trust: float = 1e4) -> FloatArray:
-    """Expand the shapes so that they leave the least dynamic residual, weighed by the flexibility.
+    """Expand the shapes so that they leave the least dynamic residual, weighted by the flexibility.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ class Structure(ABC):
 
     @abstractmethod
     def point_masses(self) -> Sparse:
-        """Return the mass matrix of the masses the modeller knows of [kg]."""
+        """Return the mass matrix of the masses stated by the modeller [kg]."""
 
     @abstractmethod
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, Sparse]:

@@ -88,7 +88,7 @@ def damped(values: FloatArray, viscous: FloatArray, count: int) -> Damped:
 
 
 def turns_modes(state: State, values: FloatArray, vectors: FloatArray) -> bool:
-    """Tell whether dampers of effects turn modes into each other by more than ``TURNED``.
+    """Return whether dampers of effects turn modes into each other by more than ``TURNED``.
 
     To first order mode k takes part in mode r with i omega_r C_kr / (omega_k^2 - omega_r^2): little unless they are
     close.

@@ -106,7 +106,7 @@ def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, 
 def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[FloatArray, FloatArray]:
     """Return the viscous and the structural damping of a state on the columns that its releases admit.
 
-    Masses that the modeller knows of take part with the model's alpha; springs and masses that effects add are
+    Masses that the modeller stated take part with the model's alpha; springs and masses that effects add are
     not damped by the coefficients.
 
     Parameters
@@ -189,12 +189,12 @@ def modal_damping(
 
 
 def _known(own: Mapping[str, FloatArray]) -> bool:
-    """Tell whether any coefficient damps."""
+    """Return whether any coefficient damps."""
     return any(np.any(values) for values in own.values())
 
 
 def _uniform(own: Mapping[str, FloatArray]) -> bool:
-    """Tell whether every coefficient is the same all over."""
+    """Return whether every coefficient is the same all over."""
     return all(np.ptp(values) == 0 for values in own.values())
 
 

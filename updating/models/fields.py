@@ -300,7 +300,7 @@ def _lines(size: float, elements: int, layers: Sequence[float] = ()) -> FloatArr
 
 
 ON_A_NODE = 1e-9
-"""So near to the end of an element, relative to its length, a place is on it, and knows nothing of the next one [-]."""
+"""So near to the end of an element, relative to its length, a place is on it, and independent of the next one [-]."""
 
 
 def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArray, FloatArray, FloatArray]]:

@@ -10,7 +10,7 @@ from updating.models.state import State
 UNASSIGNED = "unassigned"
 """What stands for a region's name where imported matrices hold more than the sum of their parts.
 
-That may be steel which nobody listed, and follow the modulus of the whole; or bolts, feet and lumped machines, which
+That may be steel which is not listed, and follow the modulus of the whole; or bolts, feet and lumped machines, which
 do not. A factor of its own, beside that of the whole, leaves both open.
 """
 

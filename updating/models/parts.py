@@ -71,7 +71,7 @@ class Region:
 
 @dataclass(frozen=True)
 class PointMass:
-    """A mass the modeller knows of.
+    """A mass stated by the modeller.
 
     Parameters
     ----------

@@ -168,7 +168,7 @@ class Reduced:
         factors : mapping, optional
             Factors of the state on top of which it comes [-].
         share : callable
-            Tells how much of a term counts [-].
+            Share of a term that counts [-].
 
         Returns
         -------
@@ -184,7 +184,7 @@ class Reduced:
 
     @cached_property
     def point_masses(self) -> FloatArray:
-        """Matrix of the masses the modeller knows of, shape (r, r) [kg in w]."""
+        """Matrix of the masses stated by the modeller, shape (r, r) [kg in w]."""
         return self.project(self.structure.point_masses())
 
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:

@@ -73,7 +73,7 @@ class Sheared(Reduced):
 
     @property
     def point_masses(self) -> FloatArray:
-        """Matrix of the masses the modeller knows of, shape (r, r) [kg in w]."""
+        """Matrix of the masses stated by the modeller, shape (r, r) [kg in w]."""
         return self.thin.point_masses
 
 

@@ -114,7 +114,7 @@ class Softening:
 
     @cached_property
     def _shift(self) -> float:
-        """A shift that holds rigid bodies; the answers of a place know nothing of it [rad^2/s^2]."""
+        """A shift that holds rigid bodies; the answers of a place are independent of it [rad^2/s^2]."""
         first = self.structure.rigid_modes
         if not first:
             return 0.0

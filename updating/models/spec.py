@@ -1,4 +1,4 @@
-"""What a modeller says of a beam or a plate, before any matrix exists."""
+"""What a modeller states about a beam or a plate, before any matrix exists."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FULLER: dict[Kind, Theory] = {"beam": "timoshenko", "plate": "mindlin"}
 """The theory of each kind of model that leaves out neither shear nor rotary inertia."""
 
 MOST_ELEMENTS = 20_000
-"""More elements than this of a uniform beam or plate say nothing new and cost memory: some 2 GB on a plate [-]."""
+"""More elements than this of a uniform beam or plate add nothing new and cost memory: some 2 GB on a plate [-]."""
 
 CALLED = {"beam": "a beam", "plate": "a plate", "matrices": "imported matrices"}
 """Kinds of model in a sentence."""
@@ -106,7 +106,7 @@ class Spec(Displayed):
     regions : tuple of Region
         Macro-elements; empty means ten along x for a beam, 5 x 3 for a plate.
     masses : tuple of PointMass
-        Masses the modeller knows of.
+        Masses stated by the modeller.
     damping : Damping
         What the modeller expects.
     imported : Imported, optional

@@ -1,4 +1,4 @@
-"""A departure from the nominal model: the one language in which tolerances, effects and updates speak."""
+"""A departure from the nominal model: the one language in which tolerances, effects and updates are stated."""
 
 from __future__ import annotations
 

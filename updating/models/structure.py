@@ -88,7 +88,7 @@ class FieldStructure(Structure):
         return Sparse(total)
 
     def point_masses(self) -> Sparse:
-        """Assemble the masses the modeller knows of [kg in w]."""
+        """Assemble the masses stated by the modeller [kg in w]."""
         n = self.fields.n_dofs
         total = Sparse((n, n))
         for mass in self.spec.masses:
@@ -161,7 +161,7 @@ class FieldStructure(Structure):
         return 2 if self.fields.dim == 1 else 3
 
     def region_mask(self, region: Region) -> BoolArray:
-        """Tell which quadrature points lie in a region, shape (n_points,)."""
+        """Return which quadrature points lie in a region, shape (n_points,)."""
         return region_mask(region, self.fields.points)
 
 
@@ -174,7 +174,7 @@ def regions_at(spec: Spec, points: FloatArray) -> IntArray:
 
 
 def region_mask(region: Region, points: FloatArray) -> BoolArray:
-    """Tell which points (n_points, dim) [m] lie in a region, shape (n_points,)."""
+    """Return which points (n_points, dim) [m] lie in a region, shape (n_points,)."""
     inside = (points[:, 0] >= region.x[0]) & (points[:, 0] <= region.x[1])
     if region.y is not None and points.shape[1] > 1:
         inside &= (points[:, 1] >= region.y[0]) & (points[:, 1] <= region.y[1])

@@ -1,4 +1,4 @@
-"""A structure on the basis of all its degrees of freedom: what speaks to a reduced one speaks to this as well.
+"""A structure on the basis of all its degrees of freedom: with the interface of a reduced one.
 
 An effect states what it does to a reduced model. Asked on this one, the same lines give the same change of the full
 matrices, so that no effect needs an exact form beside its own.
@@ -63,7 +63,7 @@ class Whole(Reduced):
         return True
 
     def refuse_whole(self, what: str) -> None:
-        """Say that something is known on a reduced basis alone.
+        """State that something is known on a reduced basis alone.
 
         Raises
         ------

@@ -78,7 +78,7 @@ def match(
     prediction : Prediction
         The model's modes.
     order : (n_measured,) int array
-        Rank of the model mode that belongs to each measured one where shapes cannot tell: the i-th entry
+        Rank of the model mode that belongs to each measured one where shapes do not decide: the i-th entry
         counts model modes from the lowest.
     trusted : (n_frf,) bool array, optional
         Rows whose shapes are compared; left out, those that the test trusts.
@@ -105,9 +105,9 @@ def match(
 
 
 NEAR = 0.3
-"""Farthest that a measured mode without a partner in the nominal model may lie, in ln f, from the mode that it is said
-to be of a model that has one more [-]: beyond, it is said to be none. Doubled: a search finds its way from further off,
-and takes for its own what is not."""
+"""Farthest that a measured mode without a partner in the nominal model may lie, in ln f, from the mode that it is
+assigned to, of a model that has one more [-]: beyond, it is not assigned. Doubled: a search finds its way from further
+off, and takes for its own what is not."""
 
 
 def match_with_unpaired(

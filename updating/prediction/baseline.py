@@ -20,7 +20,7 @@ from updating.prediction.predict import Predictor
 from updating.test_data.measured import Measured
 
 COARSE = 0.2
-"""A calibration worse than this says nothing of modal masses [-]."""
+"""A calibration worse than this does not determine modal masses [-]."""
 
 LEAST_LEVEL = 0.1
 """Modes whose predicted constants are smaller than this share of the strongest mode's say where the sensor sits beside
@@ -34,7 +34,7 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     Parameters
     ----------
     predictor : Predictor
-        The model as it was in the baseline, looked at from its points.
+        The model as it was in the baseline, observed from its points.
     baseline : Measured
         The baseline's modes, each with a partner.
     order : (n_modes,) int array
@@ -107,7 +107,7 @@ def _matrices(predictor: Predictor, state: State, count: int) -> tuple[FloatArra
 def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]:
     """Return by what factor the specimen is heavier than its model, and the doubt in its logarithm.
 
-    A model that is too stiff for a test may as well be too light: frequencies cannot tell. The level of calibrated
+    A model that is too stiff for a test may as well be too light: frequencies do not show it. The level of calibrated
     FRFs can, since modal constants are inverse modal masses.
 
     Parameters
@@ -130,7 +130,7 @@ def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]
 def doubt_in_mass(predictor: Predictor, baseline: Measured, order: IntArray) -> float:
     """Return the doubt in the logarithm of the modal masses that a baseline leaves [-].
 
-    Where levels say nothing, half of the correction of the frequencies may have been due to mass.
+    Where levels do not decide, half of the correction of the frequencies may have been due to mass.
     """
     plain = predictor.predict(at_least=int(order.max()) + 3)
     partner = match(baseline, plain, order)

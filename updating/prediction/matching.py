@@ -96,8 +96,9 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     order, mac, ratio, keep = found.order, found.mac, found.ratio, found.keep
     if not keep.any():
         raise EstimationError(
-            f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
-            "check axes, points, boundary conditions, and the model's units (m, Pa, kg/m3)"
+            f"{measured.title or 'test'}: no measured mode resembles a model mode (best MAC "
+            f"{mac.max():.2f}); check axes, points, boundary conditions, and the model's units (m, Pa, "
+            "kg/m3)"
         )
     lost += [
         f"mode at {hertz(f)} has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f})"
@@ -117,7 +118,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
 
 @dataclass(frozen=True, eq=False)
 class _Tried:
-    """Partners of measured modes, those of some looked for after the others have theirs.
+    """Partners of measured modes, those of some sought after the others have theirs.
 
     Parameters
     ----------
@@ -178,7 +179,7 @@ def _as_stated(measured: Measured, prediction: Prediction, keep: BoolArray) -> B
     Raises
     ------
     EstimationError
-        If a stated partner is none of the model's modes.
+        If a stated partner is not one of the model's modes.
     """
     if measured.partners is None:
         return keep
@@ -194,17 +195,18 @@ MOSTLY_ALONE = (
     "most measured modes have no partner: test and model may not be the same structure, or points and signs are "
     "mistaken"
 )
-"""What is said then."""
+"""The warning in that case."""
 
 
 def _clear(measured: Measured) -> tuple[BoolArray, list[str]]:
-    """Return which modes have constants that do not drown in their own uncertainty, and what is said of the others."""
+    """Return which modes have constants above their own uncertainty, and notes on the others."""
     size = np.sqrt(np.mean(measured.constants**2, axis=0))
     doubt = np.sqrt(np.mean(measured.constants_sigma**2, axis=0)) / np.maximum(size, 1e-300)
     faint = doubt > FAINT
     if faint.all():
         raise EstimationError(
-            f"{measured.title or 'test'}: every mode's shape drowns in noise; average more hits or narrow the band"
+            f"{measured.title or 'test'}: every mode's shape is dominated by noise; average more hits or "
+            "narrow the band"
         )
     lost = [
         f"mode at {hertz(f)} is too faint to compare (its constants are uncertain by {percent(100 * d)}) "
@@ -274,7 +276,7 @@ def _probable(ratio: float) -> str:
 
 
 def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
-    """Say how far test and model are apart where ranks alone pair them.
+    """State how far test and model are apart where ranks alone pair them.
 
     Raises
     ------

@@ -45,7 +45,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Predictor(Displayed):
-    """A specimen's model, looked at from the points of a test.
+    """A specimen's model, observed from the points of a test.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Predictor(Displayed):
     measured : Measured
         The test whose points and FRFs are predicted.
     environment : Environment
-        What the study says of the surroundings.
+        What the study states about the surroundings.
     additions : tuple of callables
         What is put into the model beforehand, each a function of the predictor that returns a State:
         accepted effects, the correction by a baseline test.
@@ -125,7 +125,7 @@ class Predictor(Displayed):
 
     @property
     def expects_damping(self) -> bool:
-        """Whether the model, a region, or a baseline test says what damping to expect."""
+        """Whether the model, a region, or a baseline test states the expected damping."""
         return self.expects(self.base)
 
     def under(self, theory: Theory) -> Predictor:

@@ -1,4 +1,4 @@
-"""Where the points of a test lie on a model whose length, or width, is not what the study says.
+"""Where the points of a test lie on a model whose length, or width, is not what the study states.
 
 The test's coordinates are measured; a longer model is the nominal one stretched. Points keep their distance from the
 free end; between two ends of a kind, from the middle.
@@ -80,5 +80,5 @@ class Stretch:
 
 
 def is_placed(values: Mapping[str, Any]) -> bool:
-    """Tell whether an effect has a place in the study's coordinates, which others may stretch under it."""
+    """Return whether an effect has a place in the study's coordinates, which others may stretch under it."""
     return bool({"x", "y"} & values.keys())

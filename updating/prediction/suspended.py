@@ -26,7 +26,7 @@ def without_suspended(measured: Measured, predictor: Predictor) -> tuple[Measure
 
     They lie below all elastic ones, and are as many at the most as the test can tell motions of the whole body apart. A
     test of too few points to tell their shapes from others' has so many taken out. A mass on a spring that swings far
-    below the first elastic mode moves the body as a whole, too, and is not told from cords.
+    below the first elastic mode moves the body as a whole, too, and is not distinguished from cords.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 
 SPOILT = 0.8
-"""Mean MAC of the pairs under which points and sensors are looked for that spoil it..."""
+"""Mean MAC of the pairs under which points and sensors that spoil it are sought..."""
 
 MENDED = 0.05
 """...and by how much leaving one out must raise it [-]."""
@@ -24,12 +24,12 @@ SPOILS = 2
 none, or one that the model lacks, spoils its own MAC alone. Doubled, a bad point in a test of few modes goes unseen."""
 
 LOST = 0.4
-"""A MAC under which a mode has no partner, however near: where `SPOILS` modes lie under it, a channel is looked for
-whatever the mean. Doubled, it would be looked for in most tests, in vain."""
+"""A MAC under which a mode has no partner, however near: where `SPOILS` modes lie under it, a faulty channel is sought
+whatever the mean. Doubled, it would be sought in most tests, in vain."""
 
 OPPOSITE = 0.02
 """By how much the mean MAC may be lower with the other sign of a channel that disagrees with the model's and still
-speak against it, not its neighbour: of two sensors, either with the other's sign agrees. Doubled, a point hit from
+count against it, not its neighbour: of two sensors, either with the other's sign agrees. Doubled, a point hit from
 behind beside it may be taken for it [-]."""
 
 FEWEST = 3
@@ -205,7 +205,7 @@ def _channels(measured: Measured) -> tuple[_Channel, ...]:
 
 
 def _enough(measured: Measured, rows: BoolArray) -> bool:
-    """Tell whether enough points, and half of the fixed sensors, are left to compare shapes by."""
+    """Return whether enough points, and half of the fixed sensors, are left to compare shapes by."""
     moved, stayed = _ends(measured)
     points, sensors = len(np.unique(moved)), len(np.unique(stayed))
     left = len(np.unique(moved[rows]))

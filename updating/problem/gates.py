@@ -1,4 +1,4 @@
-"""What has to be sure before a gap is explained: that model and data are good enough to speak of one.
+"""What has to be sure before a gap is explained: that model and data are good enough to state one.
 
 A model that is coarser, or a theory that is simpler, than the noise allows shows a gap of its own, and a search would
 find some effect for it. How far mesh and theory are off, :mod:`updating.problem.theory_error` estimates.
@@ -29,7 +29,7 @@ __all__ = [
 
 
 def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
-    """Return remarks where mesh or theory are off by more than the noise of the frequencies.
+    """Return notes where mesh or theory are off by more than the noise of the frequencies.
 
     Parameters
     ----------
@@ -53,21 +53,21 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
     worst = int(np.argmax(np.abs(found.theory) / noise))
     if abs(found.theory[worst]) > noise[worst]:
         notes.append(
-            f"{spec.theory} theory leaves out shear and rotary inertia: {_percent(found.theory[worst])} in mode "
-            f'{worst + 1}, more than the noise of {_percent(noise[worst])}; theory = "{spec.fuller}" has them'
+            f"{spec.theory} theory neglects shear and rotary inertia: {_percent(found.theory[worst])} in mode "
+            f'{worst + 1}, more than the noise of {_percent(noise[worst])}; theory = "{spec.fuller}" includes them'
         )
     worst = int(np.argmax(found.width / noise))
     if found.width[worst] > noise[worst]:
         notes.append(
-            f"a theory of beams leaves out that a section bends across its width, and that clamps hinder it: up to "
-            f"{_percent(found.width[worst])} in mode {worst + 1}, more than the noise of {_percent(noise[worst])}, "
-            'and taken as a doubt; type = "plate" has both'
+            "beam theory ignores bending across the width and its restraint at clamps: up to "
+            f"{_percent(found.width[worst])} in mode {worst + 1}, more than the noise of {_percent(noise[worst])}; "
+            'this is treated as model uncertainty. type = "plate" includes both'
         )
     return notes
 
 
 def on_reduction(predictor: Predictor, count: int) -> list[str]:
-    """Return a remark on how far the reduced basis of imported matrices is off in the lowest ``count`` modes."""
+    """Return a note on how far the reduced basis of imported matrices is off in the lowest ``count`` modes."""
     reduced, imported = predictor.reduced, predictor.spec.imported
     size = reduced.basis.shape[1]
     if imported is None or not imported.stiffness_parts or size >= reduced.structure.unknowns:
@@ -86,7 +86,7 @@ def _percent(share: float) -> str:
 def on_modes(
     measured: Measured, predicted: FloatArray, order: IntArray | None = None, *, fewest: int = 3
 ) -> list[str]:
-    """Return remarks on too few modes and, where only frequencies are known, on a mode that seems to be missing.
+    """Return notes on too few modes and, where only frequencies are known, on a mode that seems to be missing.
 
     Parameters
     ----------
@@ -96,14 +96,14 @@ def on_modes(
         The model's frequencies from the lowest, at least one more than the test has [Hz].
     order : (n_modes,) int array, optional
         Rank of the model mode of each measured one; left out, its own. Where the pairing has left modes out already,
-        no more is said of it.
+        no further warning is given.
     fewest : int
-        With fewer modes paired little can be told apart: an effect and the tolerances are as many.
+        With fewer modes paired few effects can be separated: an effect and the tolerances are as many.
     """
     count = len(measured.frequency)
     notes = []
     if count < fewest:
-        notes.append(f"only {count} mode{'s' * (count > 1)} paired: little can be told apart")
+        notes.append(f"only {count} mode{'s' * (count > 1)} paired: few effects can be separated")
     if measured.has_shapes or (order is not None and np.any(order != np.arange(count))):
         return notes
     skipped = missing_mode(measured.frequency, predicted)
@@ -136,7 +136,7 @@ def missing_mode(
     -------
     int or None
         Rank of the model mode that the test skipped: leaving it out lowers the scatter of the ratios of frequency
-        about their mean to a quarter. A factor common to all modes does not count: it is what is looked for.
+        about their mean to a quarter. A factor common to all modes does not count: it is what is sought.
     """
     count = len(test)
     if count < 3 or len(model) <= count:
@@ -150,7 +150,7 @@ def missing_mode(
 
 
 def on_levels(measured: Measured, *, fluid: bool) -> list[str]:
-    """Return a remark where frequencies follow the force of the hits beyond chance.
+    """Return a note where frequencies follow the force of the hits beyond chance.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""What a section whose shear coefficient nobody states leaves in doubt.
+"""What a section whose shear coefficient is not stated leaves in doubt.
 
 A beam shears as k G A, where k follows from the form of the section: five sixths for a rectangle, nine tenths for a
-rod, half for a thin tube, less for an I (Cowper, J. Appl. Mech. 33, 1966, 335). Area and second moment do not say it.
+rod, half for a thin tube, less for an I (Cowper, J. Appl. Mech. 33, 1966, 335). Area and second moment do not
+determine it.
 """
 
 from __future__ import annotations

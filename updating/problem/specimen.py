@@ -3,7 +3,7 @@
 Every doubt that is not an effect is a *nuisance*: a column of sensitivities with a standard normal prior.
 They are the modeller's tolerances, the calibration, the common level of damping, and where each point was
 really hit. What is left is independent noise: the identification's covariance, re-mounting scatter, the
-scatter of damping from mode to mode, and how far an effect's own idealisation may be off. Each kind of data knows its
+scatter of damping from mode to mode, and how far an effect's own idealisation may be off. Each kind of data has its
 own: see :mod:`updating.likelihood`.
 """
 
@@ -155,7 +155,7 @@ class SpecimenProblem:
         return (*whole, *regional, *self.predictor.body_changes)
 
     def _of_regions(self, name: str, known: set[str]) -> bool:
-        """Tell whether a name is a factor of regions of the model."""
+        """Return whether a name is a factor of regions of the model."""
         regions, factor = regions_of(self.predictor.spec, name)
         return bool(regions) and factor in known
 
@@ -166,7 +166,7 @@ class SpecimenProblem:
 
     @cached_property
     def before(self) -> Before | None:
-        """What the baseline has already said."""
+        """What the baseline has already determined."""
         if self.baseline is None or self.baseline_order is None:
             return None
         return Before(

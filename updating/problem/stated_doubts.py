@@ -53,7 +53,7 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
 
 
 def _check_bounds(name: str, tolerances: Tolerances) -> None:
-    """See that the bounds of a property hold the model as it stands; a diagnosis asks how far it may be from there."""
+    """See that the bounds of a property hold the unchanged model; a diagnosis asks how far it may be from there."""
     low, high = tolerances.bounds.get(name, (1.0, 1.0))
     if not 0 < low <= 1 <= high:
         raise StudyError(
@@ -63,11 +63,13 @@ def _check_bounds(name: str, tolerances: Tolerances) -> None:
 
 
 def of_updates_alone(tolerances: Tolerances, spec: Spec) -> tuple[str, ...]:
-    """Say which doubts are of nothing that a diagnosis turns: numbers of a deck, and effects."""
+    """State which doubts are of nothing that a diagnosis turns: numbers of a deck, and effects."""
     regions = {region.name for region in spec.regions}
     every = dict.fromkeys([*tolerances.parts, *tolerances.bounds])
     known = unassigned(spec)
     others = [name for name in every if name not in known and name.rpartition(".")[0] not in regions]
     if not others:
         return ()
-    return (f"doubts in {', '.join(others)} are for updates; a diagnosis knows those of regions' properties",)
+    return (
+        f"doubts in {', '.join(others)} are for updates; a diagnosis uses only those of region properties",
+    )

@@ -10,7 +10,7 @@ from updating.thresholds import LEAST_CONSTANT_NOISE, LEAST_FREQUENCY_NOISE
 
 
 def theory_shows(problem: SpecimenProblem, *, part: float = 0.3) -> bool:
-    """Tell whether the fuller theory moves frequencies or shapes by more than a part of the noise.
+    """Return whether the fuller theory moves frequencies or shapes by more than a part of the noise.
 
     Parameters
     ----------

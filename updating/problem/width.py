@@ -3,8 +3,8 @@
 Poisson's ratio curves the section of a bent beam the other way. Where the wavelength is not long beside the width it
 can do so only in part, and a clamp forbids it: both stiffen, the clamp as if the beam were shorter by nu^2 b sqrt((1 -
 nu) / 6), some 0.03 of its width b (from the energy of a strip whose anticlastic curvature dies out towards the clamp).
-A plate of the same outline knows both, and says by how much. A real beam has all of it, a model of beams nothing: so
-it is a doubt of the frequencies, one amount for all modes together.
+A plate of the same outline includes both, and shows by how much. A real beam has all of it, a model of beams nothing:
+so it is a doubt of the frequencies, one amount for all modes together.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def stiffening(spec: Spec, order: IntArray, *, along: int = 40, across: int = 4)
         Rank of each mode among the elastic modes.
     along : int
         Most elements along the plate: a clamp's hold on the section is resolved for beams wider than a thirtieth of
-        their length. Doubled: twice the work for a remark.
+        their length. Doubled: twice the work for a note.
     across : int
         Elements across it: frequencies are good to a thousandth of the shift. Doubled: four times the work.
 

@@ -30,7 +30,7 @@ def modal_system(
     model : Simulated
         A clamped or hung structure.
     seen : (n_responses,) int array
-        Rows of the points that are looked at.
+        Rows of the points that are observed.
     hit : (n_points,) int array
         Rows of the points that are hit.
     responses, points : sequences of Dof

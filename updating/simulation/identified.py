@@ -15,7 +15,7 @@ from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 
 UNKNOWN_DAMPING = 0.005
-"""Damping ratio of modes of which neither test nor model says any [-]."""
+"""Damping ratio of modes of which neither test nor model gives any [-]."""
 
 
 def partners(paired: Paired, prediction: Prediction) -> IntArray:
@@ -51,9 +51,7 @@ def with_ratios(predictor: Predictor, ratios: FloatArray) -> Predictor:
     regions = tuple(replace(r, alpha=None, beta=None, loss_factor=None) for r in predictor.spec.regions)
     damping = Damping(ratios=tuple(float(r) for r in ratios))
     other = predictor.of(replace(predictor.spec, damping=damping, regions=regions))
-    return (
-        other if own else other.on(predictor.reduced)
-    )  # the basis knows the regions' damping, nothing else of it
+    return other if own else other.on(predictor.reduced)  # the basis includes only the regions' damping
 
 
 def with_identified_damping(predictor: Predictor, measured: Measured | None = None) -> Predictor:

@@ -1,4 +1,4 @@
-"""A model in one state as numbers: its matrices between its undamped modes, and the points it is looked at from."""
+"""A model in one state as numbers: its matrices between its undamped modes, and the points it is observed from."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ APART = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Simulated(Displayed):
-    """A model that can be excited and looked at.
+    """A model that can be excited and observed.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Simulated(Displayed):
     gain : float
         Factor of the measured level over the true one [-].
     decay : float
-        Decay rate of an exponential window that nobody knows of [1/s].
+        Decay rate of an exponential window that is not stated [1/s].
     """
 
     matrices: Matrices

@@ -39,7 +39,7 @@ def damped_modes(model: Simulated) -> ComplexModes:
         )
     values, vectors = linalg.eigh(model.matrices.stiffness, model.matrices.mass)
     if values[0] <= 0:
-        raise StudyError("the model has lost its stiffness in this state: an effect took more than there is")
+        raise StudyError("the model has no stiffness left in this state: an effect removed too much")
     viscous, structural = modal_damping(model.matrices, vectors)
     if uncoupled(viscous) and uncoupled(structural):
         return _alone(vectors, values + 1j * np.diag(structural), np.diag(viscous))
@@ -52,7 +52,7 @@ def modal_damping(matrices: Matrices, vectors: FloatArray) -> tuple[FloatArray, 
 
 
 def uncoupled(damping: FloatArray) -> bool:
-    """Tell whether damping leaves the undamped modes alone."""
+    """Return whether damping leaves the undamped modes alone."""
     own = np.sqrt(np.abs(np.diag(damping)))
     scale = np.outer(own, own) + UNCOUPLED * np.abs(damping).max(initial=0.0)
     off = np.abs(damping - np.diag(np.diag(damping)))

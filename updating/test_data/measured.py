@@ -1,4 +1,4 @@
-"""What a test says, in the coordinates of the model: the data side of every comparison."""
+"""The data of a test, in the coordinates of the model: the data side of every comparison."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Measured(Displayed):
     points : (n_points, dim) array
         Test points in model axes [m].
     nodes : tuple of int
-        Their node numbers; one that moves in two directions stands twice.
+        Their node numbers; one that moves in two directions is given twice.
     seen, hit : (n_frf,) int arrays
         Point of the response and of the force of each FRF; ``hit`` is -1 where only a shape is known.
     constants, constants_sigma : (n_frf, n_modes) arrays
@@ -95,7 +95,7 @@ class Measured(Displayed):
     partner_constants : (n_frf, n_modes) array, optional
         Constants of those modes, by which they are known again in a model that has changed [as ``constants``].
     guessed : bool
-        Whether ``constants_sigma`` is a guess: nobody stated how well the shapes are known.
+        Whether ``constants_sigma`` is a guess: the uncertainty of the shapes was not stated.
     trend, trend_sigma : (n_modes,) arrays, optional
         Relative change of each frequency from the first point to the last in measuring order, and the standard
         deviation of what it has for itself, nan where unknown; None where a test does not rove [-].

@@ -90,7 +90,7 @@ def place(dofs: tuple[Dof, ...], geometry: Geometry, axes: Axes, spec: Spec) -> 
 
 
 def _followed(along: FloatArray, spec: Spec) -> FloatArray:
-    """Tell which unit vectors (n, 3) the model can follow, shape (n,)."""
+    """Return which unit vectors (n, 3) the model can follow, shape (n,)."""
     if spec.imported is None:
         return np.asarray(np.abs(along[:, 2]) > FOLLOWED)
     able = np.array([spec.imported.places.has(axis) for axis in range(3)])
@@ -194,7 +194,7 @@ def _thousandfold(points: FloatArray, spec: Spec) -> str:
     )
     for wrong, value, remedy in remedies:
         if THOUSANDFOLD[0] < value < THOUSANDFOLD[1]:
-            return f"the {wrong} looks a thousand times too large: is it in mm? {remedy}"
+            return f"the {wrong} seems a thousand times too large: is it in mm? {remedy}"
     return ""
 
 

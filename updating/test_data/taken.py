@@ -101,17 +101,18 @@ def _straight(shapes: ComplexArray) -> FloatArray:
 
 
 def _with_level(calibration: float) -> tuple[str, ...]:
-    """Say that the level of mass-normalised shapes is compared, and how to have it left alone."""
+    """State that the level of mass-normalised shapes is compared, and how to have it left alone."""
     if calibration > UNKNOWN_LEVEL:
         return ()
     return (
-        f"the shapes are stated to be mass-normalised: their level is compared too, with calibration = {calibration:g} "
-        "for the doubt in it; if nobody measured the modal masses (many programs write 1), set calibration = 1",
+        "the shapes are stated to be mass-normalised: their level is compared too, with calibration = "
+        f"{calibration:g} for the doubt in it; if the modal masses were not measured (many programs write "
+        "1), set calibration = 1",
     )
 
 
 def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
-    """Warn where nobody said how well frequencies are known; refuse such that nothing makes uncertain."""
+    """Warn where the uncertainty of frequencies was not stated; refuse frequencies without any uncertainty."""
     exact = np.flatnonzero(~(np.nan_to_num(modes.frequency_sigma) > 0))
     if repeatability == 0 and len(exact):
         raise StudyError(

@@ -17,7 +17,7 @@ def bounded_step(
     Parameters
     ----------
     step : callable
-        Step of the free parameters, of a mask (p,) that tells which are free.
+        Step of the free parameters, of a mask (p,) of those that are free.
     theta, low, high : (p,) arrays
         Coordinates and their bounds.
     """

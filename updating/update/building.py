@@ -61,7 +61,8 @@ def build_specimen(
     ]
     if lean and dampers:
         raise StudyError(
-            f'update: {dampers[0]} is a coefficient of damping, of which frequencies say nothing; use method = "frf"'
+            f"update: {dampers[0]} is a coefficient of damping, on which frequencies do not depend; use "
+            'method = "frf"'
         )
     numbers = [p.name for p in parameter_set.model_parameters if p.of_deck is not None]
     if numbers and not lean:
@@ -76,8 +77,8 @@ def build_specimen(
     names = [name for name, _ in case.accepted]
     if twice := sorted(name for name in updated if names.count(name) > 1):
         raise StudyError(
-            f"update: {twice[0]} stands {names.count(twice[0])} times in [[model.effect]], and which of them is meant "
-            "is not said; leave one there"
+            f"update: {twice[0]} stands {names.count(twice[0])} times in [[model.effect]], and it is not "
+            "clear which is meant; keep one"
         )
     if updated & set(accepted):
         kept = tuple((n, v) for n, v in case.accepted if n not in updated)
@@ -206,7 +207,7 @@ def per_case(parameters: Sequence[str] | Sequence[Sequence[str]], count: int) ->
 
 
 def check_data(data: Sequence[str], cases: Sequence[Case], weights: Weights) -> None:
-    """See that what is to be data exists and can be weighed."""
+    """See that what is to be data exists and can be weighted."""
     if unknown := sorted(set(data) - {"frequencies", *BEYOND}) or "frequencies" not in data:
         found = ", ".join(unknown) if isinstance(unknown, list) else "no frequencies"
         raise StudyError(

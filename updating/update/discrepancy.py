@@ -1,4 +1,4 @@
-"""How far measured shapes err beyond what was stated of them, and how much they may then say.
+"""How far measured shapes err beyond what was stated of them, and how much weight they then have.
 
 A shape's sigma is the least known number of a test: transducers, directions and the form of the model err alike over
 many points. It is estimated from what the model leaves of the shapes, for all modes in common and, held near that,
@@ -37,11 +37,11 @@ ROUNDS = 12
 """Most estimates one after the other; an error over-rated by a hundred is then found to a per cent."""
 
 SETTLED = 0.02
-"""Relative change of the errors from which on they are found [-]: a fifth of what data of a hundred points tell."""
+"""Relative change of the errors from which on they are found [-]: a fifth of what data of a hundred points give."""
 
 RAISED = 2.0
-"""Factor by which errors grow while shapes contradict the frequencies [-]. Doubled: some shapes that could say more of
-the parameters are left to say less."""
+"""Factor by which errors grow while shapes contradict the frequencies [-]. Doubled: some shapes that could determine
+more of the parameters are given less weight."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ def agreed(system: System) -> Agreed:
         if _by_chance(system, solution):
             return _reconciled(Agreed(system, solution, others))
     system = system.discrepant([np.full(len(s.number), RANGE[1]) for s in system.specimens])
-    # shapes that may be off by twice their size say nothing of parameters, and much of which solution is the right one
+    # shapes that may be off by twice their size do not determine parameters, but largely which solution is right
     alone = replace(system, shapes=False)
     solution, others = best_solution(alone, lambda _, found: _of_any_size(system, found))
     system, solution = _estimated(system, solution)
@@ -98,7 +98,7 @@ def _of_any_size(system: System, solution: Solution) -> float:
 
 
 def _by_chance(system: System, solution: Solution) -> bool:
-    """Tell whether stated errors explain what is left of the shapes."""
+    """Return whether stated errors explain what is left of the shapes."""
     linear = system.linear(solution.theta, solution.evaluations)
     parts = [p for p in _parts(system, linear) if p is not None]
     return all(chi2.sf(p.square.sum(), max(p.free.sum(), 1.0)) > CHANCE for p in parts)
@@ -175,7 +175,9 @@ class _Part:
         if not self.guess and chi2.sf(bare, max(self.free.sum(), 1.0)) > CHANCE:
             return np.zeros(len(self.free))
         modes, held = range(len(self.free)), HELD if self.guess else 0.0
-        alone = np.median([self._size(m, 0.0, 0.0) for m in modes])  # one bad mode says nothing of the others
+        alone = np.median(
+            [self._size(m, 0.0, 0.0) for m in modes]
+        )  # one bad mode is no evidence on the others
         common = np.sqrt(
             (self.free.sum() * alone**2 + held * self.guess**2) / max(self.free.sum() + held, 1e-9)
         )

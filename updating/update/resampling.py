@@ -22,7 +22,7 @@ LEVEL = 0.95
 """Part of the draws that an interval holds."""
 
 FEWEST = 20
-"""Fewer draws tell nothing of the ends of an interval."""
+"""Fewer draws do not determine the ends of an interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,16 +82,16 @@ def bootstrap(
     """Update, then update again many times from data drawn anew.
 
     Frequencies are those that :func:`redrawn_frequencies` makes from the test's hits, or are drawn from the
-    covariance that the identification states; the scatter by re-mounting, which neither knows, is drawn on top.
+    covariance that the identification states; the scatter by re-mounting, which neither includes, is added.
     Shapes or constants, where they are data, are drawn from their covariance.
     Where tolerances hold the parameters, what they hold them near is drawn too (randomised maximum likelihood;
-    Oliver, He and Reynolds 1996), for otherwise the spread would leave out what only the tolerances say.
+    Oliver, He and Reynolds 1996), for otherwise the spread would leave out what only the tolerances determine.
     All draws are updated on the reduced model that agrees with the full one at the solution. They begin at it:
     where several solutions explain the data about as well, the intervals are widened to those of all of them.
 
     The intervals cover the measurement's scatter and, with tolerances, the modeller's doubt. They do not cover
     the model's error: a form of model that cannot fit, a wrong length or a wrong boundary shifts all draws alike;
-    ``inflation`` and the remaining errors of the frequencies speak of that.
+    ``inflation`` and the remaining errors of the frequencies show it.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def bootstrap(
     """
     if n < FEWEST:
         raise StudyError(
-            f"bootstrap: {n} draws tell nothing of an interval; ask for {FEWEST} or more, better 200"
+            f"bootstrap: {n} draws are too few for an interval; ask for {FEWEST} or more, better 200"
         )
     fitted = fit(
         cases,

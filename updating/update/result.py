@@ -35,7 +35,7 @@ class Update(Shown):
     covariance, correlations : (p, p) arrays
         Of the values [product of units] and [-].
     undetermined : tuple of str
-        Parameters that the data do not determine: what they say alone is less than the doubt before.
+        Parameters that the data do not determine: what they determine alone is less than the doubt before.
     iterations : int
         Number of steps.
     converged : bool
@@ -47,7 +47,7 @@ class Update(Shown):
     exact : bool
         Whether the frequencies after the update are those of the full model.
     warnings : tuple of str
-        What the user ought to know.
+        What the user should know.
     draws : int
         Number of bootstrap updates behind the intervals; 0 without any.
     determinability : Determinability, optional

@@ -30,7 +30,7 @@ EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
 
 AGREED = 1e-5
-"""Agreement from which on they are said to be the same where it ends without, relative [-]: a tenth of the best test's
+"""Agreement from which on they count as the same where it ends without, relative [-]: a tenth of the best test's
 sigma. Doubled: the warning that they differ comes later."""
 
 
@@ -320,7 +320,7 @@ def _shape_sigma(specimen: Specimen) -> FloatArray:
 
 
 def _on_shapes(system: System, *, contradicted: bool) -> Iterator[str]:
-    """Say how well shapes are taken to be known, where that is not as stated."""
+    """State how well shapes are taken to be known, where that is not as stated."""
     if not system.shapes:
         return
     for specimen in system.specimens:
@@ -330,19 +330,19 @@ def _on_shapes(system: System, *, contradicted: bool) -> Iterator[str]:
         size = specimen.shape_sigma
         middle, worst = float(np.median(size)), int(np.argmax(size))
         stated = (
-            "nobody stated how well shapes are known"
+            "the uncertainty of the shapes was not stated"
             if specimen.measured.guessed
-            else ("shapes miss the model by more than was stated of them")
+            else ("shapes deviate from the model by more than their stated uncertainty")
         )
         yield (
-            f"{specimen.title}: {stated}: they are taken to err by {percent(100 * middle)} of their r.m.s., that of "
-            f"test mode {specimen.number[worst]} by {percent(100 * size[worst])}"
+            f"{specimen.title}: {stated}: their error is taken as {percent(100 * middle)} of their r.m.s., "
+            f"that of test mode {specimen.number[worst]} as {percent(100 * size[worst])}"
             + (", by which they pull the frequencies no further off than these admit" if contradicted else "")
         )
 
 
 def _at_bounds(system: System, solution: Solution) -> Iterator[str]:
-    """Say which parameters the data would take beyond their bounds, and what then is to be thought of the rest."""
+    """State which parameters the data would take beyond their bounds, and what then is to be thought of the rest."""
     stopped = [
         e.name for i, t in enumerate(solution.theta) if (e := _estimate(system, i, float(t), 0.0)).at_bound
     ]
@@ -374,7 +374,8 @@ def _warnings(fitted: Fitted, statistics: Statistics, kept: tuple[Held, ...]) ->
         )
     if disagreement is None:
         found.append(
-            "an effect is known to the reduced model alone: the frequencies after the update are its own"
+            "an effect exists only in the reduced model: the frequencies after the update are those of "
+            "the reduced model"
         )
     elif disagreement >= AGREED:
         found.append(

@@ -166,7 +166,7 @@ def _controlled(
 def _restored(
     system: System, linear: Linear, theta: FloatArray, evaluations: tuple[Evaluation, ...]
 ) -> FloatArray:
-    """Return coordinates brought back to the data in those directions that data know better than the doubts.
+    """Return coordinates brought back to the data in those directions that data determine better than the doubts.
 
     Sharp data and wide tolerances leave a valley that is narrow and bent. A step along it leaves it by the bend, and
     would have to be short; the second-order correction of sequential quadratic programming (Nocedal and Wright 2006,
@@ -197,7 +197,7 @@ def _scan(system: System) -> FloatArray:
 
 
 def _trials(system: System, index: int, start: float) -> list[float]:
-    """Return values over a parameter's range; with shapes also near the start, for far from it they say no more."""
+    """Return values over a parameter's range; with shapes also near the start, for far from it they do not hold."""
     low, high = float(system.low[index]), float(system.high[index])
     values = [*np.linspace(low, high, GRID).tolist(), start]
     if system.shapes:

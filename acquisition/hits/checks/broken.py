@@ -16,7 +16,7 @@ STEADY = 1e-9
 
 
 def why_broken(hits: Hits) -> list[Fault | None]:
-    """Return for each hit at a point why nothing can be said of it, None where it can be judged.
+    """Return for each hit at a point why it cannot be judged, None where it can.
 
     Parameters
     ----------

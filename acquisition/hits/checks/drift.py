@@ -46,7 +46,7 @@ def without_drift(force: FloatArray, *, fade: float = 0.0) -> FloatArray:
 
 
 def _uneven(centred: FloatArray) -> BoolArray:
-    """Tell which records have stretches whose medians differ by more than noise makes them, (n_hits,)."""
+    """Return which records have stretches whose medians differ by more than noise makes them, (n_hits,)."""
     length = centred.shape[-1] // STRETCHES
     if length < 4:
         return np.zeros(len(centred), dtype=np.bool_)
@@ -83,7 +83,7 @@ def _weight(left: FloatArray) -> FloatArray:
 
 
 def _sure(wave: FloatArray, drift: FloatArray, weight: FloatArray, count: int) -> bool:
-    """Tell whether a drift leaves so much less of the samples without force that noise cannot be the reason."""
+    """Return whether a drift leaves so much less of the samples without force that noise cannot be the reason."""
     constant = float(weight @ (wave - weight @ wave / weight.sum()) ** 2)
     left = float(weight @ (wave - drift) ** 2)
     return bool((constant - left) / (count - 1) > SURE * left / (np.count_nonzero(weight) - count))

@@ -25,7 +25,7 @@ def odd_responses(hits: Hits, good: Sequence[int], band: float) -> dict[int, flo
     hits : Hits
         Hits at one point.
     good : sequence of int
-        Which hits are compared; fewer than three cannot be told apart.
+        Which hits are compared; fewer than three cannot be compared.
     band : float
         Upper end of the lines used, relative to the sampling rate [-].
     """

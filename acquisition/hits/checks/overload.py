@@ -25,7 +25,7 @@ one that falls steeply agree as well in one hit of 30 000 [-]; with steps ten ti
 
 
 def clipped(records: FloatArray, *, least: int = 3) -> BoolArray:
-    """Tell which records (..., n_samples) have a flat top: three or more samples at their extreme.
+    """Return which records (..., n_samples) have a flat top: three or more samples at their extreme.
 
     The broad top of a long pulse is flat too once it is rounded to the converter's steps; there the next
     samples lie a step below, while a clipped wave leaves its top steeply.
@@ -49,7 +49,7 @@ def clipped(records: FloatArray, *, least: int = 3) -> BoolArray:
 
 
 def _leaves_steeply(wave: FloatArray, at_top: BoolArray, least: int) -> bool:
-    """Tell whether some flat top of as many samples or more is no rounded parabola.
+    """Return whether some flat top of as many samples or more is no rounded parabola.
 
     A parabola that rounding has flattened over r samples is some 8 steps lower r samples farther out.
     """
@@ -79,7 +79,7 @@ def _finest_step(wave: FloatArray) -> float:
 
 
 def flat_pulse(wave: FloatArray) -> bool:
-    """Tell whether a force pulse has a flat top that a filter has rounded.
+    """Return whether a force pulse has a flat top that a filter has rounded.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def flat_pulse(wave: FloatArray) -> bool:
 
 
 def flat_waves(record: FloatArray) -> bool:
-    """Tell whether the largest waves of a response end flat and at one level, as after clipping and filtering.
+    """Return whether the largest waves of a response end flat and at one level, as after clipping and filtering.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _swing(centred: FloatArray, top: int) -> tuple[int, float, float, int]:
 
 
 def at_common_limit(records: Sequence[FloatArray]) -> BoolArray:
-    """Tell which records of one channel end exactly at the same largest value, which is then its limit.
+    """Return which records of one channel end exactly at the same largest value, which is then its limit.
 
     Two records of different energy whose largest values agree to the last step are no accident if the steps
     are fine; with coarse steps it takes three.
@@ -158,5 +158,5 @@ def at_common_limit(records: Sequence[FloatArray]) -> BoolArray:
     steps = np.diff(np.unique(np.abs(there[0])))
     steps = steps[steps > 1e-9 * limit]
     fine = len(steps) > 0 and float(steps.min()) < FINE_STEP * limit
-    differ = np.ptp(energy) > DIFFERENT * energy.max()  # copies of one record tell nothing
+    differ = np.ptp(energy) > DIFFERENT * energy.max()  # copies of one record give no information
     return np.asarray(reached & bool(differ and reached.sum() >= (2 if fine else 3)), dtype=np.bool_)

@@ -17,7 +17,7 @@ SHOULDER = 0.12  # of peak / width: how much the slope must relax and steepen ag
 SHOULDER_LEVEL = 0.06  # of the peak: what lies lower is no shoulder
 OWN_RINGING = 0.6  # a lobe beside a negative one of this part of its height is left-over ringing
 SLOPE = 3  # samples that have a slope which can bend
-ENOUGH = 12  # samples per pulse from which shoulders can be told
+ENOUGH = 12  # samples per pulse from which shoulders can be detected
 
 
 def second_hits(wave: FloatArray) -> list[tuple[int, float]]:

@@ -9,7 +9,9 @@ import numpy as np
 from acquisition.arrays import FloatArray
 
 LONGEST_TOP = 64
-"""Samples of a top that are followed; a longer top tells its rate no better, a shorter limit would [-]."""
+"""Samples of a top that are followed; a longer top determines its rate no better; a shorter limit would lose accuracy
+[-].
+"""
 
 BEND = 2e-6
 """Change of the logarithm's slope from sample to sample that is rounding: single precision has 3e-7; with ten times
@@ -19,7 +21,7 @@ ZERO = 1e-9
 """Part of the top below which a sample counts as zero, whose logarithm there is none [-]."""
 
 FASTEST_FALL = 20.0
-"""Decay over a record, in nepers, beyond which nobody windows: e^-20 is below every converter's step [-]."""
+"""Decay over a record, in nepers, beyond which no window is used: e^-20 is below every converter's step [-]."""
 
 
 def top_decay(

@@ -79,7 +79,7 @@ class Bytes:
 
 @dataclass(frozen=True)
 class Array:
-    """An array as its header says; the numbers are still bytes.
+    """An array as its header states; the numbers are still bytes.
 
     Parameters
     ----------

@@ -110,7 +110,7 @@ def _bytes(path: Path) -> Bytes:
         )
     order = {b"IM": "<", b"MI": ">"}.get(raw[126:128])
     if order is None or raw[124:126] not in (b"\x00\x01", b"\x01\x00"):
-        raise InputError(f"{path}: no MATLAB file of version 5 to 7.2; save it with save(..., '-v7')")
+        raise InputError(f"{path}: not a MATLAB file of version 5 to 7.2; save it with save(..., '-v7')")
     return Bytes(memoryview(raw), order, str(path))
 
 
@@ -178,7 +178,9 @@ def _field(array: Array, name: str) -> Array:
         )
     for part in path:
         if array.kind != STRUCTURE:
-            raise InputError(f"{array.body.where}: {array.name!r} is no structure; it has no field {part!r}")
+            raise InputError(
+                f"{array.body.where}: {array.name!r} is not a structure; it has no field {part!r}"
+            )
         fields = {field.name: field for field in array.fields()}
         if part not in fields:
             there = _listed(list(fields))

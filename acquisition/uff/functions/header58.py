@@ -81,12 +81,12 @@ class Header58:
 
     @property
     def decay(self) -> float:
-        """Decay of an exponential window that the ID lines speak of [1/s]."""
+        """Decay of an exponential window stated in the ID lines [1/s]."""
         return decay_of(self.title)[0]
 
     @property
     def averages(self) -> int:
-        """Number of averages that the ID lines speak of, 0 if they do not."""
+        """Number of averages stated in the ID lines, 0 for none."""
         return averages_of(self.title)[0]
 
     @property
@@ -96,7 +96,7 @@ class Header58:
 
     @property
     def hit(self) -> str:
-        """Number of the hit that the ID lines speak of; empty if they do not."""
+        """Number of the hit stated in the ID lines; empty for none."""
         return hit_of(self.title)
 
     @property
@@ -165,7 +165,7 @@ def _fields(line: str, ends: tuple[int, ...]) -> list[str]:
 
 
 def _odd(lines: list[str]) -> tuple[str, ...]:
-    """Say which fields of the header do not fill their columns: a character may be lost there."""
+    """State which fields of the header do not fill their columns: a character may be lost there."""
     wrong: list[str] = []
     for line, ends, whole in ((lines[5], IDENTITY, _WHOLE), (lines[6], FORM, (0, 1, 2)), *_axis_lines(lines)):
         fields = _fields(line, ends)

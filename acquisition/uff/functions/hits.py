@@ -165,7 +165,7 @@ def _step_of(steps: Iterable[float], record: Measurement) -> float:
 
 
 def _trouble(records: Sequence[Measurement]) -> str:
-    """Say why the records of a hit do not form one; empty if they do."""
+    """State why the records of a hit do not form one; empty if they do."""
     lengths = {m.points for m in records}
     if len(lengths) > 1:
         return f"its records have different lengths {sorted(lengths)}"

@@ -1,4 +1,4 @@
-"""What the ID lines of a function speak of: the decay of an exponential window, averages, the hit's number and time."""
+"""What the ID lines of a function state: the decay of an exponential window, averages, the hit's number and time."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def decay_of(lines: Sequence[str]) -> tuple[float, str]:
         if near := _misspelt(text, "exponential window decay"):
             return 0.0, near
         named = _WINDOW.search(text)
-        return 0.0, f"its ID lines speak of {named[0]!r} without a rate that can be read" if named else ""
+        return 0.0, f"its ID lines mention {named[0]!r} without a readable rate" if named else ""
     dash, number, rest = found.groups()
     if number is None:
         word = "" if rest.lower().strip(".") in _NO_WINDOW else rest
-        return 0.0, f"its exponential window decay {word!r} is no number: not taken" if word else ""
+        return 0.0, f"its exponential window decay {word!r} is not a number: ignored" if word else ""
     decay = float(number)
     if not abs(decay) <= _FASTEST:
-        return 0.0, f"its exponential window decay {number[:20]} cannot be meant: not taken"
+        return 0.0, f"its exponential window decay {number[:20]} is implausible: ignored"
     if dash or decay < 0:
         decay = abs(decay)
         return decay, f"its exponential window decay is given as {dash}{number}; taken for {decay:g} 1/s"
@@ -58,12 +58,12 @@ def averages_of(lines: Sequence[str]) -> tuple[int, str]:
     found = _AVERAGES.search(_joined(lines))
     if found is None:
         if any(line[:LENGTH].strip(" :=").lower() == "averages" for line in lines):
-            return 0, "its ID lines speak of averages without a number"
+            return 0, "its ID lines mention averages without a number"
         return 0, _misspelt(_joined(lines), "averages")
     count = int(found[1][:12])
     if count <= _MOST_AVERAGES:
         return count, ""
-    return 0, f"its ID lines speak of {found[1][:20]} averages: not taken"
+    return 0, f"its ID lines state {found[1][:20]} averages: ignored"
 
 
 def hit_of(lines: Sequence[str]) -> str:
@@ -80,7 +80,9 @@ def _misspelt(text: str, key: str) -> str:
         before = [word for word in words[max(0, i - length - 1) : i] if word not in ("=", ":")][-length:]
         statement = " ".join(before).rstrip("=:").lower()
         if number and statement != key and SequenceMatcher(None, statement, key).ratio() >= _NEARLY:
-            return f"its ID lines say {statement[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
+            return (
+                f"its ID lines state {statement[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
+            )
     return ""
 
 

@@ -135,7 +135,7 @@ def measure(
     file, order : int
         Which file it is from, and its place in the order of all records.
     digest : bool
-        Whether copies are looked for.
+        Whether to search for copies.
 
     Raises
     ------

@@ -48,7 +48,7 @@ def pair_up(forces: Sequence[Measurement], answers: dict[Dof, list[Measurement]]
     hits = _by_order(forces, answers)
     if hits is not None:
         return hits, "; they are paired by their order in the file"
-    return [], "; neither hit numbers, times nor their order tell which belong together: all are left out"
+    return [], "; hit numbers, times and order do not show which belong together: all are left out"
 
 
 def _by_place(forces: Sequence[Measurement], answers: dict[Dof, list[Measurement]]) -> list[Hit]:
@@ -60,7 +60,7 @@ def _by_place(forces: Sequence[Measurement], answers: dict[Dof, list[Measurement
 
 
 def _regular(forces: Sequence[Measurement], answers: dict[Dof, list[Measurement]]) -> bool:
-    """Tell whether all forces stand together, or equally many responses as there are channels between them."""
+    """Return whether all forces stand together, or equally many responses as there are channels between them."""
     motions = sorted(m.order for list_ in answers.values() for m in list_)
     between = {b - a for a, b in pairwise(bisect(motions, m.order) for m in forces)}
     return between <= {0} or between == {len(answers)}
@@ -77,7 +77,7 @@ def _file_and_number(record: Measurement) -> object:
 def _by_label(
     forces: Sequence[Measurement], answers: dict[Dof, list[Measurement]], label: _Label
 ) -> list[Hit] | None:
-    """Pair records of the same label; None if a label is missing, stands twice, or never matches."""
+    """Pair records of the same label; None if a label is missing, is given twice, or never matches."""
     lists = [list(forces), *answers.values()]
     labels = [[label(m) for m in list_] for list_ in lists]
     if any("" in names or len(set(names)) < len(names) for names in labels):

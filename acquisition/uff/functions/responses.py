@@ -40,7 +40,7 @@ def assemble_frfs(
             groups[(*record.axis, record.quantity, record.decay)].append(record)
     refused = [key for key in groups if key[3] not in MOTIONS]
     for key in refused:
-        warnings.append(f"{groups.pop(key)[0].place}: a ratio that is no motion per force; left out")
+        warnings.append(f"{groups.pop(key)[0].place}: a ratio that is not a motion per force; left out")
     if not groups:
         return None, warnings
     chosen = max(groups.values(), key=len)

@@ -55,7 +55,7 @@ class Units:
 
 
 def units_of(code: int, length: float, force: float) -> tuple[Units, str]:
-    """Return the units that a data set 164 states, and a remark if it contradicts itself.
+    """Return the units that a data set 164 states, and a warning if it contradicts itself.
 
     Raises
     ------
@@ -75,7 +75,9 @@ def units_of(code: int, length: float, force: float) -> tuple[Units, str]:
         return Units(length, force, True), note
     if code in _SYSTEMS:
         return Units(*_SYSTEMS[code], known=True), f"no factors, those of units code {code} are used"
-    raise InputError(f"units code {code} with factors of length {length:g} and force {force:g} says nothing")
+    raise InputError(
+        f"units code {code} with factors of length {length:g} and force {force:g} defines no unit system"
+    )
 
 
 def to_si(axis: Axis, units: Units, *, rotation: bool = False) -> tuple[Quantity, float]:
@@ -165,7 +167,7 @@ def product_of(label: str) -> tuple[Quantity, float] | None:
 
 
 def is_density(label: str) -> bool | None:
-    """Tell whether a spectrum is per hertz; None if its label says nothing."""
+    """Return whether a spectrum is per hertz; None if its label does not state it."""
     return None if not _bare(label) else _without_hertz(label) != _bare(label)
 
 

@@ -56,7 +56,7 @@ class Located:
     def abscissa(self) -> FloatArray:
         """Return the abscissa [file's unit]."""
         if not self.header.even:
-            with np.errstate(invalid="ignore"):  # nan is looked for later
+            with np.errstate(invalid="ignore"):  # nan is searched for later
                 return np.asarray(self.stored.read("x"), dtype=np.float64)
         steps = np.arange(self.header.points, dtype=np.float64)
         return np.asarray(self.header.minimum + self.header.increment * steps)
@@ -68,7 +68,7 @@ def locate(source: Source, block: Block, spool: IO[bytes]) -> Located:
     Raises
     ------
     InputError
-        If the header cannot be read, values are missing or are no numbers, or the number format is unknown.
+        If the header cannot be read, values are missing or are not numbers, or the number format is unknown.
     """
     data = source.data
     body = header_end(data, block.start)
@@ -169,7 +169,7 @@ def _text(
             f"{surplus} numbers more than its {header.points} points need, on lines of unequal length: "
             "one is broken in two or one too many"
         )
-    if lost or surplus >= forms.on_last:  # zeros that fill the last line are no numbers
+    if lost or surplus >= forms.on_last:  # zeros that fill the last line are not numbers
         notes.append(f"{surplus} numbers after its {header.points} points are left out")
     return Stored(spool, offset, layout, header.points)
 

@@ -25,7 +25,7 @@ def read_lines(number: int, body: bytes) -> tuple[IntArray, str]:
     Raises
     ------
     InputError
-        If entries are missing or are no whole numbers.
+        If entries are missing or are not whole numbers.
     """
     pairs, note = _trace(body) if number == 82 else _elements(body)
     lines = np.array([(min(p), max(p)) for p in pairs if p[0] != p[1]], dtype=np.int64).reshape(-1, 2)
@@ -35,7 +35,7 @@ def read_lines(number: int, body: bytes) -> tuple[IntArray, str]:
 def _whole(text: bytes, number: int) -> list[int]:
     values = numbers_of(text)
     if not np.isfinite(values).all() or np.any(values % 1) or np.any(np.abs(values) > 1e15):
-        raise InputError(f"data set {number}: node numbers that are no whole numbers")
+        raise InputError(f"data set {number}: node numbers that are not whole numbers")
     return [int(v) for v in values]
 
 

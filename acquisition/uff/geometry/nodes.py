@@ -70,7 +70,7 @@ class Nodes:
 
 
 def merge_nodes(sets: Iterable[NodeSet], lines: Sequence[IntArray]) -> Nodes:
-    """Return the nodes of all sets; where one is given two places, the first counts and a remark is made."""
+    """Return the nodes of all sets; where one is given two places, the first counts and a warning is given."""
     places: dict[int, FloatArray] = {}
     axes: dict[int, FloatArray] = {}
     notes: list[str] = []
@@ -103,7 +103,7 @@ def merge_nodes(sets: Iterable[NodeSet], lines: Sequence[IntArray]) -> Nodes:
 
 
 def turned(nodes: Nodes, dofs: Iterable[Dof]) -> str:
-    """Say which of the nodes of some degrees of freedom had their directions turned; empty if none."""
+    """State which of the nodes of some degrees of freedom had their directions turned; empty if none."""
     which = sorted({dof.node for dof in dofs if nodes.turn(dof) != dof})
     if not which:
         return ""
@@ -115,7 +115,7 @@ def _named(nodes: Sequence[int]) -> str:
 
 
 def _global_places(one: NodeSet, notes: list[str]) -> FloatArray:
-    """Return global coordinates [m]; nan where they cannot be told."""
+    """Return global coordinates [m]; nan where they are not determined."""
     places = one.coordinates / one.units.length
     for label in np.unique(one.given).tolist():
         rows = one.given == label

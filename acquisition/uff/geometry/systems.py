@@ -161,7 +161,7 @@ def read_systems(number: int, body: bytes, units: Units) -> dict[int, System]:
 def _labels(line: bytes) -> list[int]:
     values = numbers_of(line)
     if not np.all(np.abs(values) < 1e9):
-        raise InputError("labels of a coordinate system that are no whole numbers")
+        raise InputError("labels of a coordinate system that are not whole numbers")
     return [int(v) for v in values]
 
 

@@ -23,7 +23,7 @@ _ON_FIRST_LINE = {15: 7, 2411: 4}
 
 
 def read_units(body: bytes) -> tuple[Units, str]:
-    """Return the units of a data set 164, and a remark if something was odd.
+    """Return the units of a data set 164, and a warning if something was odd.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def read_units(body: bytes) -> tuple[Units, str]:
         words = " ".join(lines[1:]).upper().replace("D", "E").split()
         factors = [float(word) for word in words]
     except (ValueError, IndexError, OverflowError):
-        raise InputError("data set 164 cannot be read: units code or factors are no numbers") from None
+        raise InputError("data set 164 cannot be read: units code or factors are not numbers") from None
     if len(factors) > _FACTORS:
         raise InputError(
             f"data set 164 holds {len(factors)} factors, {_FACTORS} at most are meant: one is broken in two"
@@ -85,7 +85,7 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
     Raises
     ------
     InputError
-        If entries are missing or are no numbers.
+        If entries are missing or are not numbers.
     """
     entries = numbers_of(body)
     if len(entries) % 7 or len(entries) == 0:
@@ -105,7 +105,7 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
         or not np.isfinite(labels).all()
         or not np.isfinite(coordinates).all()
     ):
-        raise InputError(f"data set {number}: node numbers or coordinates are no numbers")
+        raise InputError(f"data set {number}: node numbers or coordinates are not numbers")
     if np.any(labels % 1) or np.any(np.abs(labels) > 1e15) or np.any(np.abs(coordinates) > 1e15):
         raise InputError(f"data set {number}: node numbers or coordinates that cannot be meant")
     return labels.astype(np.int64), coordinates

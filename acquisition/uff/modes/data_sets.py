@@ -94,7 +94,7 @@ class ModeSet:
 
     @property
     def key(self) -> tuple[float, ...]:
-        """What a mode that stands twice has in common: frequency, damping or eigenvalue, and those of the ID lines."""
+        """What a mode given twice has in common: frequency, damping or eigenvalue, and those of the ID lines."""
         stated = (
             (self.eigenvalue.real, self.eigenvalue.imag)
             if self.is_complex
@@ -104,7 +104,7 @@ class ModeSet:
 
 
 def same_shape(one: ModeSet, other: ModeSet) -> bool:
-    """Tell whether two modes have the same nodes and, but for a factor, the same shape."""
+    """Return whether two modes have the same nodes and, but for a factor, the same shape."""
     if not np.array_equal(one.nodes, other.nodes):
         return False
     across = abs(np.vdot(one.shape, other.shape)) ** 2

@@ -19,7 +19,7 @@ from acquisition.uff.modes.data_sets import ModeSet, SigmaSet
 class Mode:
     """One mode: its data set, its pole [rad/s], whether damping is stated, shape in SI, whether mass-normalised.
 
-    ``hertz`` tells whether its eigenvalue was taken for (damping, frequency) in Hz; ``scale`` (6,) is what the shape
+    ``hertz`` states whether its eigenvalue was taken for (damping, frequency) in Hz; ``scale`` (6,) is what the shape
     of the file was multiplied by; ``sigma`` (n, 6) its standard deviations, where they are given.
     """
 
@@ -77,7 +77,7 @@ def _same(sigma: SigmaSet, mode: Mode) -> bool:
 
 
 def describe(mode: Mode) -> str:
-    """Say what a mode was taken for."""
+    """State what a mode was taken for."""
     text = f"{abs(mode.pole) / (2 * np.pi):.6g} Hz, {len(mode.stated.nodes)} nodes"
     if not mode.stated.is_complex:
         return f"{text}, normal mode"
@@ -86,7 +86,7 @@ def describe(mode: Mode) -> str:
 
 
 def _in_hertz(sets: Sequence[ModeSet]) -> tuple[bool, str]:
-    """Tell whether the eigenvalues of a file are in Hz, and what had to be assumed."""
+    """Return whether the eigenvalues of a file are in Hz, and what had to be assumed."""
     if not sets:
         return False, ""
     votes = [vote for s in sets for vote in (_by_frequency(s), _by_modal_b(s)) if vote is not None]
@@ -104,13 +104,13 @@ def _in_hertz(sets: Sequence[ModeSet]) -> tuple[bool, str]:
             "put the frequency into an ID line to make sure"
         )
     return False, (
-        f"{sets[0].place}: nothing tells the unit of the eigenvalues; taken for {name}; "
-        "put the frequency into an ID line to make sure"
+        f"{sets[0].place}: the unit of the eigenvalues is not stated; assumed: {name}; put the frequency "
+        "into an ID line to make sure"
     )
 
 
 def _by_frequency(mode: ModeSet) -> bool | None:
-    """Return what the frequency in the ID lines says: in Hz or not; None if nothing."""
+    """Return what the frequency in the ID lines states: in Hz or not; None if nothing."""
     ratio = mode.stated_values.frequency / abs(mode.eigenvalue)
     return next(
         (hertz for hertz, unit in ((True, 1.0), (False, 0.5 / np.pi)) if abs(ratio / unit - 1) < 0.02), None
@@ -118,7 +118,7 @@ def _by_frequency(mode: ModeSet) -> bool | None:
 
 
 def _by_modal_b(mode: ModeSet) -> bool | None:
-    """Return what modal B / modal A = -eigenvalue says; None if they are not stated."""
+    """Return what modal B / modal A = -eigenvalue states; None if they are not stated."""
     if mode.modal_a == 0 or mode.modal_b == 0:
         return None
     ratio = abs(mode.modal_b / mode.modal_a) / abs(mode.eigenvalue)

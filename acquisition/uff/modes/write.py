@@ -16,7 +16,7 @@ def mode_sets(modal: ModalData) -> Iterator[bytes]:
     The first ID line keeps all digits, ``mode 1: 10.25 Hz, damping ratio 0.0125``; the second the standard
     deviations, where there are any, ``sigma 0.001 Hz, damping sigma 0.0002``: a data set 55 has no other
     place for them. Standard deviations of a shape follow as a data set of their own, of unknown analysis type (0), so
-    that no reader takes them for a mode; its first ID line says ``shape sigma of mode 1``.
+    that no reader takes them for a mode; its first ID line states ``shape sigma of mode 1``.
     """
     assert modal.damping is not None
     assert modal.damping_sigma is not None

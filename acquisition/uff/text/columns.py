@@ -19,7 +19,7 @@ _TOKEN = re.compile(rb"(?:0+\.?0*|\.0+)(?:e ?0+)?|x+")
 _NUMBER = re.compile(rb"(?:0+\.?0*|\.0+)(?:e ?0+| 000)?|x+")
 _EXPONENTIAL = re.compile(rb"(?<![\d.eEdD])[\d.]{1,40}[eEdD][+-]?\d+")
 _EXPONENT = re.compile(rb"e ?0+")
-# Most forms that are told apart; a text of fixed columns has a handful, one of free columns as many as it has
+# Most forms that are distinguished; a text of fixed columns has a handful, one of free columns as many as it has
 # lines. It bounds memory at some 100 bytes each; doubling it changes nothing for either.
 _MOST_FORMS = 4096
 # Forms that are tried for the usual one. In a table of a few lines no two are the same, as numbers of nodes have
@@ -97,7 +97,7 @@ class LineForms:
         return _values(self.last)
 
     def uneven(self, wanted: int) -> bool:
-        """Tell whether a line but the last holds another number of values than most, or the last more.
+        """Return whether a line but the last holds another number of values than most, or the last more.
 
         Where no number of values is that of most lines, nor of all but those that one break makes, the text is a
         free one, and none is wrong.
@@ -192,7 +192,7 @@ def _columns(form: bytes) -> list[tuple[int, bytes]]:
 
 
 def _alike(one: bytes, model: bytes) -> bool:
-    """Tell whether a number is printed as another: the same decimals, or no more of them where there are exponents."""
+    """Return whether a number is printed as another: the same decimals, or no more where there are exponents."""
     if one == model or (one and not one.strip(b"x")):
         return True
     if _NUMBER.fullmatch(one) is None:
@@ -209,5 +209,5 @@ def _alike(one: bytes, model: bytes) -> bool:
 
 
 def _aligned(one: bytes, model: bytes) -> bool:
-    """Tell whether a number is one, whatever the other is; that it ends in the same column is known."""
+    """Return whether a number is one, whatever the other is; that it ends in the same column is known."""
     return _NUMBER.fullmatch(one) is not None

@@ -36,11 +36,11 @@ def numbers_of(text: bytes) -> FloatArray:
             warnings.simplefilter("error")
             return np.asarray(np.fromstring(text, dtype=np.float64, sep=" "))
     except (DeprecationWarning, ValueError):
-        raise InputError(f"{_first_bad(text)!r} stands among its values and is no number") from None
+        raise InputError(f"{_first_bad(text)!r} stands among its values and is not a number") from None
 
 
 def _signs_touch(text: bytes) -> bool:
-    """Tell whether a sign follows a digit or a point somewhere."""
+    """Return whether a sign follows a digit or a point somewhere."""
     code = np.frombuffer(text, np.uint8)
     after, before = code[1:], code[:-1]
     sign = np.flatnonzero((after == ord("+")) | (after == ord("-")))

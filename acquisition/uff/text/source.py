@@ -14,7 +14,7 @@ from typing import IO, Any
 from acquisition.errors import InputError
 
 _WINDOW = 1 << 20
-_KEPT = 1 << 24  # bytes looked at before their pages are given back
+_KEPT = 1 << 24  # bytes read before their pages are given back
 _HEAD = 1 << 16
 
 
@@ -49,7 +49,7 @@ class Source:
         return count
 
     def passed(self, start: int, stop: int) -> None:
-        """Take note of what has been looked at; every now and then its pages are given back to the system."""
+        """Record what has been read; every now and then its pages are given back to the system."""
         if start // _KEPT != stop // _KEPT:
             self.release()
 

@@ -130,7 +130,7 @@ def header_set(title: str) -> bytes:
 
 
 def units_set() -> bytes:
-    """Return a data set 164 that says SI."""
+    """Return a data set 164 with SI units."""
     one, zero = "   1.00000000000000000D+00", "   0.00000000000000000D+00"
     return _text_set(
         164, [f"{1:10d}{'SI: Meter (newton)':20s}{2:10d}", f"{one[1:]}{one[1:]}{one[1:]}", zero[1:]]

@@ -10,7 +10,7 @@ from identification.fit.equations.refine import Fit
 
 _FALSE_ALARM = 1e-8
 # Standard deviations that half-width and damping of a mode must exceed: those just over the threshold of the strength
-# have six where noise is what the weights say. Twice as much strikes these; half as much lets flanks of noise pass.
+# have six where noise is what the weights imply. Twice as much strikes these; half as much lets flanks of noise pass.
 _KNOWN = 3.0
 _UNDAMPED = 1e-7  # damping ratio of nothing that vibrates
 
@@ -33,7 +33,7 @@ def constant_variance(fit: Fit) -> FloatArray:
 def pole_covariance(fit: Fit) -> FloatArray:
     """Return the covariance of (Re, Im) of the poles, interleaved, (2 n_modes, 2 n_modes) [rad^2/s^2].
 
-    Poles the data tell nothing about, to rounding, get the variance of that rounding and no correlation.
+    Poles that the data do not determine, to rounding, get the variance of that rounding and no correlation.
     """
     return inverse_information(fit.information)
 
@@ -67,7 +67,7 @@ def threshold(n_frf: int, n_lines: int) -> float:
 
 
 def significant(fit: Fit, *, n_lines: int, inflation: FloatArray | float = 1.0) -> BoolArray:
-    """Tell which modes are significant, shape (n_modes,).
+    """Return which modes are significant, shape (n_modes,).
 
     ``inflation`` is the factor by which noise that fades over the record makes the residues' variances
     larger, see :func:`identification.fit.noise.window_shaped.inflation`.
@@ -76,7 +76,7 @@ def significant(fit: Fit, *, n_lines: int, inflation: FloatArray | float = 1.0) 
 
 
 def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:
-    """Tell which poles can be modes or the flank of one, shape (n_modes,).
+    """Return which poles can be modes or the flank of one, shape (n_modes,).
 
     In reach: within one band width of the band, damping ratio above -0.1 and under 35 %.
     """
@@ -87,11 +87,11 @@ def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:
 
 
 def located(poles: ComplexArray, spread: FloatArray, modes: BoolArray) -> BoolArray:
-    """Tell which modes are somewhere, shape (n_modes,): noise fitted by a pole is not.
+    """Return which modes are somewhere, shape (n_modes,): noise fitted by a pole is not.
 
     The frequency is known to a third of the half-power half-width and to half the distance of the next mode, the
     damping ratio to a third of itself: a mode that is barely significant has a sixth. A strong mode may miss them
-    too, where lines are too far apart to tell its damping: what this says is of modes that hardly stand out.
+    too, where lines are too far apart to determine its damping: this concerns modes that hardly stand out.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def located(poles: ComplexArray, spread: FloatArray, modes: BoolArray) -> BoolAr
 
 
 def inside(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
-    """Tell which poles are modes of the band, shape (n_modes,).
+    """Return which poles are modes of the band, shape (n_modes,).
 
     Their damped frequency lies in it, their ratio is above 1e-7 and under 20 %, and their half-power band is
     narrower than half the band: what is broader is a background.

@@ -168,7 +168,7 @@ def evaluate(
 
 
 def scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
-    """Return what each FRF alone says about each pole of a fit.
+    """Return the information of each FRF alone on each pole of a fit.
 
     Returns
     -------
@@ -186,7 +186,7 @@ def scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
 
 
 def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
-    """Return what each FRF alone says about the relative shifts of all frequencies of a fit.
+    """Return the information of each FRF alone on the relative shifts of all frequencies of a fit.
 
     A shift d moves a pole from p to p (1 + d), so that its damping ratio stays.
 

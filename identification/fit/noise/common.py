@@ -1,10 +1,10 @@
 """Noise that all outputs of a hit have in common, and the evidence for a mode without it.
 
 Noise of the force multiplies all responses of a hit by the same 1 + e(f): it looks like a mode in all outputs at
-once, and none of them alone tells. With h the FRFs of one hit point and r what a model leaves of them, the noise
+once, and no single output shows it. With h the FRFs of one hit point and r what a model leaves of them, the noise
 has the covariance A + b h h^H, A diagonal; b follows from how much more power the residual has along h
 than independent noise of the same size would have. What the common part explains is then taken out (the
-conditional mean of e given r), and what is left speaks for a mode or does not.
+conditional mean of e given r), and what is left supports a mode or does not.
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ def _factor_variance(
 
 
 def beyond_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> BoolArray:
-    """Tell which modes of a fit stand out of what noise common to all outputs can make, shape (n_modes,).
+    """Return which modes of a fit stand out of what noise common to all outputs can make, shape (n_modes,).
 
     Without the mode, what the common noise explains of the rest is taken out; the mode must still explain more
     than noise can. Modes so strong that no common noise reaches them are not asked, and none where there is none.

@@ -36,7 +36,7 @@ def between_frfs(gradient: FloatArray, normal: FloatArray, expected: FloatArray)
     """Estimate how far the FRFs disagree on each pole.
 
     A hammer or a sensor that roves loads the structure differently at every point, and temperature drifts:
-    every FRF then has poles of its own. Each FRF's gradient at the common fit tells where its own pole lies,
+    every FRF then has poles of its own. Each FRF's gradient at the common fit shows where its own pole lies,
     N_j^-1 g_j away; 2 sum g_j^T N_j^-1 g_j is chi-square of 2 (n - 1) degrees of freedom if only noise moves
     them. Beyond one chance in a thousand the scatter is taken for real; how large it is follows from
     :func:`scatter_beyond_noise`.
@@ -92,7 +92,7 @@ def scatter_beyond_noise(values: FloatArray, variance: FloatArray) -> FloatArray
     """Return the variance between quantities measured with known variances, shape as one row of ``values``.
 
     It is the t for which sum (x_j - mean)^2 / (v_j + t) = n - 1, the mean weighted alike (Paule and Mandel,
-    J. Res. Natl. Bur. Stand. 87 (1982) 377-385); 0 if the scatter is no larger than the variances say.
+    J. Res. Natl. Bur. Stand. 87 (1982) 377-385); 0 if the scatter is no larger than the variances imply.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 A line shape is a factor on the impulse response, and it vanishes at some lags. What rings there in the transform of the
 FRFs was not under that window, whichever modes they have and however these differ from FRF to FRF: a test that needs no
-fit to hold. Modes that have died away by then, and errors of averages, tell nothing.
+fit to hold. Modes that have died away by then, and errors of averages, are not informative.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ EDGE = 0.2
 Doubled: modes near the ends count less."""
 
 LEAST = 0.01
-"""Part of the power that modes without the shape must have at those lags, for the lags to tell [-]: errors of averages
-over 60 blocks have a tenth of that. Doubled: peaks a line wide tell no more."""
+"""Part of the power that modes without the shape must have at those lags, for the lags to be informative [-]: errors
+of averages over 60 blocks have a tenth of that. Doubled: peaks a line wide give no more information."""
 
 
 def contradicted(frfs: FrfSet, fit: Fit) -> bool:
-    """Tell whether FRFs ring at the lags at which their line shape leaves nothing.
+    """Return whether FRFs ring at the lags at which their line shape leaves nothing.
 
     They do if their power there is nearer to what the modes of a fit would have without the shape than with it. FRFs
     count by the part of their power that the fit explains: noise rings at all lags.

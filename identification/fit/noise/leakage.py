@@ -19,7 +19,7 @@ from acquisition.frfs.frf import FrfSet
 
 
 def follows(frfs: FrfSet) -> bool:
-    """Tell whether errors of FRFs follow this law: averages of blocks whose variance did not come with them."""
+    """Return whether errors of FRFs follow this law: averages of blocks whose variance did not come with them."""
     return frfs.variance is None and frfs.line_shape is not None and frfs.line_shape.kind == "averaged"
 
 

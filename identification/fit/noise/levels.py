@@ -26,7 +26,7 @@ _PIECE = 16  # lines over which the scatter is averaged before the median
 # coherence near zero gives millions. Twice as much lets one line raise its whole stretch.
 _SPIKE = 10.0
 _MORE = 1.5  # by which a stretch must exceed the law: two standard deviations where each line has one degree of freedom
-_FEWEST = 15  # lines under which fourth differences are too few to tell the scatter
+_FEWEST = 15  # lines under which fourth differences are too few to determine the scatter
 
 
 def window_length(n_lines: int) -> int:

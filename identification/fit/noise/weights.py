@@ -26,7 +26,7 @@ def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
 def search_weights(frfs: FrfSet, fit: Fit, residual: ComplexArray | None = None) -> Weights:
     """Weigh by the scatter from line to line, which does not mind what the model still lacks.
 
-    Where the data carry variance or coherence, the lines weigh in common as these say: noise of the force
+    Where the data carry variance or coherence, the lines weigh in common as these imply: noise of the force
     is larger on a peak. What the fit leaves, ``residual``, is computed where it is not given.
     """
     residual = left_over(frfs, fit) if residual is None else residual
@@ -80,7 +80,7 @@ def noise_weights(
 ) -> tuple[Weights, FloatArray, bool]:
     """Return weights and variances by the noise itself, and whether these came with the data.
 
-    What the data say of their noise is scaled to the residual where it is coherence without hits to count.
+    The noise estimated from the data is scaled to the residual where it is coherence without hits to count.
     """
     if leaked is not None:
         weights = _of_leakage(frfs, np.abs(residual) ** 2 / np.maximum(1.0 - absorbed, _LEAST_FREE), leaked)

@@ -24,7 +24,7 @@ _CERTAIN = 2.0  # four standard deviations of the ratio below, for steady noise
 
 
 def roughness(fade: float, order: int) -> float:
-    """Return the mean square of the differences of fading noise over that of as strong a steady noise [-].
+    """Return the mean square of the differences of window-shaped noise over that of as strong a steady noise [-].
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def at_start(fade: float) -> float:
 
 
 def inflation(fade: float, decay: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return by what factor fading noise makes variances larger than steady noise of the same power.
+    """Return by what factor window-shaped noise makes variances larger than steady noise of the same power.
 
     A pole that decays by ``decay`` over the record is fitted by exp(-s t) for its residue and t exp(-s t)
     for itself; least squares with equal weights then has the covariance A^-1 B A^-1, where A holds the

@@ -188,7 +188,7 @@ def _gathered(
     turns: FloatArray,
     held: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Sum what each FRF says of the poles and of its own reference into all parameters, shapes eliminated.
+    """Sum the information of each FRF on the poles and on its own reference into all parameters, shapes eliminated.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 With references j and responses i a mode's residues are R_ij = phi_i l_j, a shape times participations. A
 fit that leaves every residue free spends a parameter on each; two close modes then share what they have
-between them at will. Held to rank one they are told apart by what differs: their shapes and participations.
+between them at will. Held to rank one they are separated by what differs: their shapes and participations.
 Poles beyond the band stand for many modes each, so their residues stay free.
 """
 
@@ -82,7 +82,7 @@ def hold_to_rank_one(
     modes : (n_modes,) bool array
         Which poles are modes; at least one.
     inflation : float
-        Factor by which noise that fades over the record exceeds what the weights say [-].
+        Factor by which noise that fades over the record exceeds what the weights imply [-].
 
     Returns
     -------

@@ -70,7 +70,7 @@ class _Search:
 
 
 def _room(frfs: FrfSet, fit: Fit) -> bool:
-    """Tell whether the lines carry one more pole: each FRF has two values a line, twice as many as unknowns."""
+    """Return whether the lines carry one more pole: each FRF has two values a line, twice as many as unknowns."""
     return len(frfs.frequency) > 2 * (len(fit.poles) + 1) + len(fit.linear.powers)
 
 
@@ -100,7 +100,7 @@ def _best_of(frfs: FrfSet, fit: Fit, weights: Weights, trials: ComplexArray) -> 
 
 
 def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[float, float]) -> bool:
-    """Tell whether a pole that was added stands for a mode of its own."""
+    """Return whether a pole that was added stands for a mode of its own."""
     if len(trial.poles) <= len(fit.poles):
         return False
     grown = int(inside(trial.poles, band, frfs.df).sum()) > int(inside(fit.poles, band, frfs.df).sum())

@@ -18,7 +18,7 @@ _RATIOS = np.array([0.0003, 0.001, 0.003, 0.01, 0.03])
 
 
 def nearest_modes(poles: ComplexArray, hertz: Sequence[float], candidates: BoolArray, df: float) -> BoolArray:
-    """Tell which poles the user means by their frequencies, shape (n_modes,).
+    """Return which poles the user means by their frequencies, shape (n_modes,).
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ def split_mode_pairs(
 
 
 def two_by_references(residues: ComplexArray, places: Sorted) -> BoolArray:
-    """Tell which pairs differ in shape and in participation, both residues being of rank one."""
+    """Return which pairs differ in shape and in participation, both residues being of rank one."""
     table = np.zeros((residues.shape[1], *places.shape), complex)
     table[:, places.row, places.column] = (residues * places.sign[:, None]).T
     measured = np.zeros(places.shape, dtype=bool)

@@ -1,7 +1,7 @@
 """Poles that are one mode whose frequency is another in every FRF.
 
 A sensor or a hammer that roves, or a temperature that rises, moves the frequencies from FRF to FRF. Two or
-three common poles then fit the difference nearly as well as two or three modes would. The difference is told by
+three common poles then fit the difference nearly as well as two or three modes would. The difference is detected by
 what explains the FRFs: common poles, or one pole for each FRF alone.
 """
 
@@ -58,7 +58,7 @@ def clusters(poles: ComplexArray, disagreement: BoolArray | None = None) -> list
 
 
 def alike_wide(poles: ComplexArray) -> BoolArray:
-    """Tell which pairs of poles are about as wide, shape (n_modes, n_modes): parts of one mode are."""
+    """Return which pairs of poles are about as wide, shape (n_modes, n_modes): parts of one mode are."""
     width = np.abs(poles.real)
     wider = np.maximum(width[:, None], width[None, :])
     return np.asarray(wider < _UNEQUAL * np.minimum(width[:, None], width[None, :]))

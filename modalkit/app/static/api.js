@@ -16,7 +16,7 @@ async function asked(path, options) {
   try {
     response = await fetch(path, options);
   } catch {
-    throw new Error("the server does not answer; start it again: what was done is kept");
+    throw new Error("the server does not answer; start it again: all changes are kept");
   }
   return answered(response);
 }

@@ -33,7 +33,7 @@ export async function placed(root, given) {
     view.show(given.page);
     return view;
   } catch {
-    fill(made.querySelector(".space"), h("p", { class: "muted" }, "This browser draws nothing in three dimensions."));
+    fill(made.querySelector(".space"), h("p", { class: "muted" }, "This browser cannot draw in three dimensions."));
     return null;
   }
 }

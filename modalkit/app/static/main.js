@@ -80,7 +80,7 @@ function notice(text, kind = "") {
   );
 }
 
-/** Make a change; a refused one leaves everything as it is and says why. */
+/** Make a change; a refused one leaves everything as it is and states why. */
 async function changed(send) {
   let state;
   try {
@@ -105,12 +105,12 @@ function head() {
     byId("tools"),
     button("↶ Undo", () => app.change("undo"), {
       disabled: !state.undo,
-      title: state.undo ? `take back: ${state.undo}` : "nothing to take back",
+      title: state.undo ? `undo: ${state.undo}` : "nothing to undo",
       id: "undo",
     }),
     button("↷ Redo", () => app.change("redo"), {
       disabled: !state.redo,
-      title: state.redo ? `do again: ${state.redo}` : "nothing to do again",
+      title: state.redo ? `redo: ${state.redo}` : "nothing to redo",
       id: "redo",
     }),
     button("Export", exported, {

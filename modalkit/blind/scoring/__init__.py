@@ -1,1 +1,1 @@
-"""How a blind run is scored: what was hidden beside what was said."""
+"""How a blind run is scored: hidden effects compared with the answers."""

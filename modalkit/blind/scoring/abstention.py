@@ -81,7 +81,7 @@ def curve(confidence: FloatArray, right: FloatArray) -> pd.DataFrame:
     Parameters
     ----------
     confidence : (n_trials,) array
-        Probability of the first set; 0 where nothing is said at any threshold [-].
+        Probability of the first set; 0 where no answer is given at any threshold [-].
     right : (n_trials,) array
         1 where that set is the truth.
 

@@ -55,7 +55,7 @@ def bins(stated: FloatArray) -> np.ndarray:
 
 
 def calibration_error(points: FloatArray) -> FloatArray:
-    """Return the expected calibration error: |share right - stated| by bin, weighed by the trials in it.
+    """Return the expected calibration error: |share right - stated| by bin, weighted by the trials in it.
 
     Parameters
     ----------

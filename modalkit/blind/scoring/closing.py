@@ -1,4 +1,4 @@
-"""How far the gap closes: what the diagnosis says against what comes true on the rig."""
+"""How far the gap closes: what the diagnosis states against what comes true on the rig."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def closed(before: float | None, after: float | None, floor: float = 0.0) -> flo
 
 
 def comparable(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the trials in which what is said and what is true speak of the same thing, frequency or damping.
+    """Return the trials in which statement and truth concern the same quantity, frequency or damping.
 
     Parameters
     ----------

@@ -39,21 +39,21 @@ def merged(effects: Collection[str]) -> frozenset[str]:
 
 
 def accepted(effects: Collection[str], truth: Truth) -> bool:
-    """Tell whether a set is a right answer; it must be the whole set, and a cause in no library where it is that."""
+    """Return whether a set is a right answer; it must be the whole set, and a cause in no library where it is that."""
     if tuple(effects) == (SOMETHING_ELSE,):
         return sort_of(truth) in ("outside", "left out")
     return tuple(sorted(effects)) in truth.accepted
 
 
 def holds(answer: Answer, truth: Truth) -> bool:
-    """Tell whether the named set or one of the class is a right answer."""
+    """Return whether the named set or one of the class is a right answer."""
     return answer.verdict in ("named", "class") and any(accepted(s, truth) for s in answer.sets)
 
 
 def credit(answer: Answer, truth: Truth) -> float:
     """Return the chance that one set picked blindly from the answer is right.
 
-    A class that lists everything that was compared says nothing, and gets nothing.
+    A class that lists everything that was compared is not informative, and gets no credit.
     """
     if answer.verdict in ("unknown", "none"):
         return float(is_right(answer, truth))
@@ -63,7 +63,7 @@ def credit(answer: Answer, truth: Truth) -> float:
 
 
 def is_right(answer: Answer, truth: Truth) -> bool:
-    """Tell whether the answer is true.
+    """Return whether the answer is true.
 
     That is: the effect named or in the class; ``none`` for none; for effects that the diagnosis cannot know,
     ``unknown`` or an honest equivalent.
@@ -76,11 +76,11 @@ def is_right(answer: Answer, truth: Truth) -> bool:
 
 
 def top_is_right(answer: Answer, truth: Truth) -> bool:
-    """Tell whether the most probable answer is the truth: none, unknown, or the first set of the ranking."""
+    """Return whether the most probable answer is the truth: none, unknown, or the first set of the ranking."""
     best = answer.best
     return is_right(answer, truth) if best is None else accepted(best.effects, truth)
 
 
 def commits(answer: Answer) -> bool:
-    """Tell whether the answer is a single one: one set, or several that are the same change of the data."""
+    """Return whether the answer is a single one: one set, or several that are the same change of the data."""
     return answer.verdict in ("named", "class") and len({merged(s) for s in answer.sets}) == 1

@@ -1,4 +1,4 @@
-"""Effects that the diagnosis cannot know: told from those it knows, or given a wrong name."""
+"""Effects outside the library of the diagnosis: separated from those inside, or given a wrong name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ANSWERS = ("unknown", "equivalent", "wrong name", "wrong class", "none", "failed
 
 
 def open_set(trials: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
-    """Yield how well the diagnosis knows what it does not know, by hidden effect.
+    """Yield how well the diagnosis recognises what is outside its library, by hidden effect.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ def sections(score: Score) -> tuple[Section, ...]:
     Returns
     -------
     tuple of Section
-        Those that something can be said in.
+        Those with an answer.
     """
     return tuple(section for make in _MAKERS if len((section := make(score)).table))
 
@@ -155,7 +155,7 @@ def _unknowable(score: Score) -> Section:
     columns |= {name: (open_set.answer(name), _count) for name in open_set.ANSWERS}
     area = score.rates[open_set.AREA, ALL]
     note = (
-        f"1 - p of fit of the best row tells unknown from known effects with an area under the ROC of "
+        "1 - p of fit of the best row separates unknown from known effects with an area under the ROC of "
         f"{value_text(area)}, {area.total} trials; 0.5 is chance"
         if np.isfinite(area.rate)
         else ""
@@ -264,15 +264,15 @@ def _channels(score: Score) -> Section:
 
 def _closing(score: Score) -> Section:
     columns = {
-        "|said - true| [points of %]": (closing.MISSED, value_text),
-        "said": (closing.STATED, _per_cent),
+        "|stated - true| [points of %]": (closing.MISSED, value_text),
+        "stated": (closing.STATED, _per_cent),
         "true": (closing.TRUE, _per_cent),
         "above the band": (closing.BEYOND, _per_cent),
         "within 10 points": (closing.MET, share_text),
         "count": (closing.MET, count_text),
         "inside its 95 % interval": (closing.INSIDE, share_text),
     }
-    note = "share of the gap that closes: as said, and with the answer in the rig's own nominal body"
+    note = "share of the gap that closes: as stated, and with the answer in the rig's own nominal body"
     table = _grid(score, "trials", _groups(score, closing.MET), columns)
     return Section("How far the gap closes", note, table)
 

@@ -1,4 +1,4 @@
-"""Where: places said against places hidden, and the channel."""
+"""Where: stated places against hidden ones, and the channel."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _row(outcome: Outcome, answer: Answer) -> list[Any]:
 
 
 def _covered(outcome: Outcome) -> bool | None:
-    """Tell whether every interval of a coordinate holds the true one."""
+    """Return whether every interval of a coordinate holds the true one."""
     statement = true_row(outcome)
     if statement is None:
         return None

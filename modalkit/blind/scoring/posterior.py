@@ -80,7 +80,7 @@ def posterior(answer: Answer, truth: Truth) -> Posterior:
     Returns
     -------
     Posterior
-        Names that may be the same change stay apart where this truth tells them apart, as a window and damping that
+        Names that may be the same change stay apart where this truth separates them, as a window and damping that
         rises with frequency: a false one takes no part in the true one's merit.
     """
     shares: dict[tuple[frozenset[str], bool], float] = {}

@@ -1,4 +1,6 @@
-"""The score of a blind run: how often it is right, when it commits, what it confuses, and whether it knows."""
+"""The score of a blind run: how often it is right, when it commits, what it confuses, and whether its confidence is
+justified.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ SCHEMA, EARLIER = "modalkit.blind/2", "modalkit.blind/1"
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """What a blind run says: one table of all questions, and what it is counted from.
+    """What a blind run states: one table of all questions, and what it is counted from.
 
     Parameters
     ----------
@@ -46,7 +48,7 @@ class Score:
     places : pandas.DataFrame
         Errors of places, one by one.
     closing : pandas.DataFrame
-        Shrinkage said and true, one by one.
+        Stated and true shrinkage, one by one.
     """
 
     result: BlindResult

@@ -1,4 +1,4 @@
-"""How strong: parameters said against parameters hidden."""
+"""How strong: stated parameters against hidden ones."""
 
 from __future__ import annotations
 

@@ -27,11 +27,11 @@ class Rate:
     question, group : str
         What is asked, and of which trials.
     count : float
-        How often it is so; whole unless a class counts by its share, nan for a number that is no share [-].
+        How often it is so; whole unless a class counts by its share, nan for a number that is not a share [-].
     total : int
         Trials, or parameters, or places, that are asked [-].
     rate : float
-        ``count / total``, or that number; nan without trials [-, or as the question says].
+        ``count / total``, or that number; nan without trials [-, or the unit of the question].
     low, high : float
         Its 95 % interval: Wilson's of a share, the bootstrap's of another number; nan for none.
     """

@@ -1,4 +1,4 @@
-"""What was hidden beside what was said, trial by trial."""
+"""Hidden effects compared with the answers, trial by trial."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _row(outcome: Outcome) -> dict[str, Any]:
 
 
 def is_visible(truth: Truth) -> bool:
-    """Tell whether the data show what is hidden: of several effects each beside the others.
+    """Return whether the data show what is hidden: of several effects each beside the others.
 
     Of one that the library lacks, whether they show that it does.
     """

@@ -30,7 +30,7 @@ def share_text(row: Rate) -> str:
 
 
 def count_text(row: Rate) -> str:
-    """Return ``34 of 40``; a credit that is no whole number has a decimal."""
+    """Return ``34 of 40``; a credit that is not a whole number has a decimal."""
     return f"{row.count:.{0 if float(row.count).is_integer() else 1}f} of {row.total}"
 
 

@@ -1,4 +1,4 @@
-"""Whether a diagnosis knows when it is right: abstention, reliability, and what it cannot know."""
+"""Whether the confidence of a diagnosis is justified: abstention, reliability, and effects outside its library."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ def _curve(axes: Axes, drawn: Curve, colour: str, words: str, strength: float) -
 
 
 def reliability_figure(score: Score) -> Figure:
-    """Draw how often a probability comes true, and how well the fit tells what cannot be known.
+    """Draw how often a probability comes true, and how well the fit detects what is outside the library.
 
     Parameters
     ----------
@@ -227,12 +227,12 @@ def _reliability(axes: Axes, bins: Sequence[Rate], stated: Sequence[Rate]) -> No
 
 def _roc(axes: Axes, roc: pd.DataFrame, area: Rate) -> None:
     tidy(axes, x="known effects called unknown [%]", y="unknowable ones found [%]")
-    head(axes, "Unknown told from known by the fit")
+    head(axes, "Unknown separated from known by the fit")
     axes.plot([0, 100], [0, 100], color=FAINT, linewidth=1.2, zorder=1.5)
     axes.set_xlim(0, 101)
     axes.set_ylim(0, 101)
     if roc.empty or not np.isfinite(area.rate):
-        axes.text(50, 50, "nothing to tell apart in this run", fontsize=SMALL, color=MUTED, ha="center")
+        axes.text(50, 50, "nothing to separate in this run", fontsize=SMALL, color=MUTED, ha="center")
         return
     across, up = (100 * np.concatenate([[0.0], roc[name].to_numpy(float)]) for name in ("false", "found"))
     axes.step(across, up, where="post", color=BLUE, linewidth=2.0, zorder=3)

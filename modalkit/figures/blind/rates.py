@@ -65,8 +65,9 @@ def rates_figure(score: Score) -> Figure:
     name, first = next(iter(asked.items()))
     title = f"{name[0].upper()}{name[1:]} in {_count(first)} blind trials"
     note = (
-        "Bars are 95 % intervals. Effects fainter than three standard deviations are not asked for. Effect by effect, "
-        "an answer is right that names it, holds it in a class, or says unknown where it cannot be known."
+        "Bars are 95 % intervals. Effects fainter than three standard deviations are not asked for. "
+        "Effect by effect, an answer is right that names it, holds it in a class, or is unknown where it "
+        "cannot be known."
     )
     top = caption_height(title, note) + 0.1
     left = MARGIN + 0.15 + min(4.3, max(text_width(name, SMALL) for name in asked) / 72)
@@ -130,7 +131,7 @@ def _bars(axes: Axes, table: Sequence[Rate], names: list[str], colours: list[str
 
 
 def _key(axes: Axes, sorts: Collection[str]) -> None:
-    """Say what the colours of the dots are."""
+    """State what the colours of the dots are."""
     words = {
         "effect": "in the library",
         "none": "none hidden",

@@ -1,4 +1,4 @@
-"""How strong, where and how far it closes: said against true."""
+"""How strong, where and how far it closes: stated against true."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def severity_figure(severity: pd.DataFrame) -> Figure:
     figure = new_figure(top + sum(heights) + 0.65)
     caption(figure, title, note)
     axes = place(figure, 3.1, top, WIDTH - 3.1 - 1.3, sum(heights), name="severity")
-    tidy(axes, x="said over true, minus 1 [%]", grid="x")
+    tidy(axes, x="stated over true, minus 1 [%]", grid="x")
     axes.axvline(0, color=MUTED, linewidth=0.9, zorder=1.2)
     base = np.concatenate([[0.0], np.cumsum(heights)])
     for i, name in enumerate(names):
@@ -131,7 +131,7 @@ def _trials(axes: Axes, some: pd.DataFrame, begin: float, end: float, spread: fl
 
 
 def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
-    """Draw the shrinkage said against the true one, and the errors of place.
+    """Draw the stated shrinkage against the true one, and the errors of place.
 
     Parameters
     ----------
@@ -152,11 +152,13 @@ def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
     stated = comparable(closing)
     held = places[places["held"].astype(bool)]
     if stated.empty and held.empty:
-        raise InputError("no trial says how far its gap closes, or where it sits; there is nothing to draw")
-    title = "How far the gap closes was not said"
+        raise InputError(
+            "no trial states how far its gap closes, or where the cause is; there is nothing to draw"
+        )
+    title = "How far the gap closes was not stated"
     if len(stated):
         distance = (stated["said"] - stated["true"]).abs()
-        title = f"Said and true shrinkage differ by {distance.mean():.1f} points of % in the mean"
+        title = f"Stated and true shrinkage differ by {distance.mean():.1f} points of % in the mean"
     note = (
         "Left: share of the gap that closes; true: with the answer in the rig's own nominal body. Right: errors of "
         "place where the answer holds the effect, of the nearest of mirrored places and of the first one."
@@ -170,7 +172,7 @@ def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
 
 
 def _closing(axes: Axes, stated: pd.DataFrame) -> None:
-    tidy(axes, x="true [%]", y="said, on data held out [%]")
+    tidy(axes, x="true [%]", y="stated, on data held out [%]")
     head(axes, "How far the gap closes")
     low = 0.0
     if len(stated):
@@ -213,7 +215,13 @@ def _places(axes: Axes, held: pd.DataFrame) -> None:
     axes.set_ylim(0, 101)
     if held.empty:
         axes.text(
-            0.5, 0.5, "no place was said", transform=axes.transAxes, fontsize=SMALL, color=MUTED, ha="center"
+            0.5,
+            0.5,
+            "no place was stated",
+            transform=axes.transAxes,
+            fontsize=SMALL,
+            color=MUTED,
+            ha="center",
         )
         return
     axes.set_xscale("log")

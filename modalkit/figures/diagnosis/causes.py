@@ -95,7 +95,7 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
 
 
 def _under(row: _Row, width: float) -> list[str]:
-    """Return what is said of an answer's parameters below its bar."""
+    """Return the text on an answer's parameters below its bar."""
     if not row.answer:
         return []
     room, parts = 72 * width, row.detail.split(", ")

@@ -1,4 +1,4 @@
-"""Measured FRFs under those of the model as it stands and of the model with the best explanation in it."""
+"""Measured FRFs under those of the unchanged model and of the model with the best explanation in it."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Overlaid:
     Parameters
     ----------
     before : CorrelatedFrfs
-        With the model as it stands, a baseline's correction included.
+        With the unchanged model, a baseline's correction included.
     after : CorrelatedFrfs, optional
         With the best explanation in it.
     every : int
@@ -177,7 +177,7 @@ def _exchanged(frfs: FrfSet, nodes: tuple[int, ...], state: State) -> IntArray:
 
 
 def overlaid_figure(both: Overlaid, *, count: int = 4) -> Figure:
-    """Draw magnitude and phase of some FRFs: measured, the model as it stands, and with the explanation.
+    """Draw magnitude and phase of some FRFs: measured, the unchanged model, and with the explanation.
 
     Parameters
     ----------

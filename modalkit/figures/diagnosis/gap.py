@@ -58,7 +58,7 @@ def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str
     if diagnosis.verdict == "none":
         return f"{_capital(name)}, {modes}: {_outside(errors)}"
     if errors.after is None:
-        return f"{_capital(name)} is what gives the gap away ({modes})"
+        return f"{_capital(name)} shows the gap most clearly ({modes})"
     shrink = diagnosis.shrink
     if errors.channel != shrink.metric or of_several:
         return f"{_capital(name)} of {modes}, before and after"
@@ -68,13 +68,13 @@ def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str
 
 
 def _outside(errors: ModeErrors) -> str:
-    """Say how many modes lie outside the band of noise and tolerances that is drawn."""
+    """State how many modes lie outside the band of noise and tolerances that is drawn."""
     band = errors.doubt if errors.doubt is not None else errors.floor
     if band is None:
-        return "no more off than tolerances and noise make"
+        return "all within tolerances and noise"
     what = "noise and tolerances" if errors.doubt is not None else "noise"
     count = int(np.sum(np.abs(errors.before) > band))
-    return f"{count or 'none'} outside what {what} make (2σ)"
+    return f"{count or 'none'} outside the band of {what} (2σ)"
 
 
 def _capital(text: str) -> str:

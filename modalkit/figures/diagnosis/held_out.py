@@ -16,7 +16,7 @@ from updating import Diagnosis
 def rivals(diagnosis: Diagnosis) -> list[tuple[str, float, bool]]:
     """Return (name, gap on held-out modes [%], whether it is the best explanation) from worst to best known."""
     shrink, ranking = diagnosis.shrink, diagnosis.ranking
-    rows = [("the model as it stands", shrink.held_before, False)]
+    rows = [("the unchanged model", shrink.held_before, False)]
     rows.append(("tolerances alone", shrink.held_nuisance, False))
     if shrink.held_runner_up is not None:
         name = short(ranking[1].effects) if len(ranking) > 1 else "the runner-up"

@@ -54,7 +54,7 @@ FAR = 10.0
 """Standard deviations at which the colour of a cell is full."""
 
 NAMED = 4
-"""Most sets of effects that a title names; of more, it says how many [-]."""
+"""Most sets of effects that a title names; of more, it states how many [-]."""
 
 MOST = 20
 """Most modes in the table: those that add the most."""
@@ -109,15 +109,15 @@ def _tall(diagnosis: Diagnosis, case: Case | None) -> float:
 
 
 def localisation_title(diagnosis: Diagnosis) -> str:
-    """Say where the gap sits, as far as the answer's own sets of effects tell."""
+    """State where the gap sits, as far as the answer's own sets of effects show it."""
     where = diagnosis.where
     if where.channel == "none":
         return "There is no gap beyond tolerances and noise"
     top = max(where.zones, key=lambda z: z.probability, default=None)
     if diagnosis.verdict == "unknown" and top is not None:
-        return f"Nothing explains the gap; a change of {top.name} alone would come nearest"
+        return f"No explanation was found for the gap; a change of {top.name} alone would fit best"
     if _in_doubt(diagnosis):
-        return "Whether the gap sits in the measurement or in the structure, these data cannot tell"
+        return "These data cannot show whether the gap lies in the measurement or in the structure"
     if spans(diagnosis):
         points = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
         inside = (
@@ -136,7 +136,7 @@ def localisation_title(diagnosis: Diagnosis) -> str:
         whole = "Part of the gap" if diagnosis.sets and len(diagnosis.sets[0]) > 1 else "The gap"
         return f"{whole} sits {located(diagnosis)}{more}"
     if diagnosis.verdict not in ("named", "class"):
-        return "Nothing explains the gap, and it has no single place"
+        return "No explanation was found for the gap, and it has no single place"
     listed = [phrase(names) for names in diagnosis.sets[:NAMED]]
     if len(diagnosis.sets) > NAMED:
         listed.append(counted(len(diagnosis.sets) - NAMED, "other"))
@@ -145,7 +145,7 @@ def localisation_title(diagnosis: Diagnosis) -> str:
 
 
 def _in_doubt(diagnosis: Diagnosis) -> bool:
-    """Tell whether some sets of the answer lie in the measurement alone and others do not."""
+    """Return whether some sets of the answer lie in the measurement alone and others do not."""
     acting = [{diagnosis.known[n].channel for n in names if n in diagnosis.known} for names in diagnosis.sets]
     alone = [channels == {"measurement"} for channels in acting]
     return diagnosis.verdict == "class" and any(alone) and not all(alone)

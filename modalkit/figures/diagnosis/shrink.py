@@ -13,7 +13,7 @@ ROOM, ROW = 4.2, 0.42
 
 
 def shrink_figure(diagnosis: Diagnosis) -> Figure:
-    """Draw the gap of the model as it stands, of the tolerances alone, of the runner-up and of the answer.
+    """Draw the gap of the unchanged model, of the tolerances alone, of the runner-up and of the answer.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def _title(diagnosis: Diagnosis) -> str:
     if shrink.closed is None or not shrink.closed.determined:
         before, after = map(shrink.size, (shrink.held_before, shrink.held_after))
         return f"{before} becomes {after} on modes held out"
-    return f"Closes {shrink.closed} of what can close"
+    return f"Closes {shrink.closed} of the reducible gap"
 
 
 def _note(diagnosis: Diagnosis) -> str:
@@ -52,7 +52,7 @@ def _note(diagnosis: Diagnosis) -> str:
         return ""
     if shrink.held_nuisance <= 1.25 * shrink.held_after:
         return (
-            "The tolerances alone would close the gap of this kind of data as far: "
-            "what names the cause is the rest of the data, not this figure."
+            "The tolerances alone would close the gap in this kind of data as far: the cause is "
+            "identified by the other data, not by this figure."
         )
     return "Each mode is predicted from all the others in turn."

@@ -73,7 +73,7 @@ class Outline:
 
 
 def outline(diagnosis: Diagnosis, case: Case | None) -> Outline:
-    """Gather what is known of the structure; without a case, what the zones' centres tell."""
+    """Gather what is known of the structure; without a case, what the zones' centres show."""
     found = {zone.name: zone.probability for zone in diagnosis.where.zones}
     if case is None:
         return _from_centres(diagnosis)
@@ -128,7 +128,7 @@ def _edges(centres: list[float]) -> dict[float, tuple[float, float]]:
 
 
 def spans(diagnosis: Diagnosis) -> bool:
-    """Tell whether the first explanation has a cause in the measurement and one in the structure."""
+    """Return whether the first explanation has a cause in the measurement and one in the structure."""
     leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
     acting = {diagnosis.known[name].channel for name in leader if name in diagnosis.known}
     return diagnosis.verdict in ("named", "class") and "measurement" in acting and len(acting) > 1
@@ -278,7 +278,7 @@ def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: Frame, width:
             texts[where.channel] = "in the measurement and in the structure"
         text = texts.get(where.channel, "no single place: it acts on all of it")
         if diagnosis.verdict == "unknown":
-            text = "no place is known: nothing explains the gap"
+            text = "no place is known: no explanation was found"
         axes.text(0.0, base, text, fontsize=TEXT, color=MUTED)
         return
     places = where.locations or (where.location,)

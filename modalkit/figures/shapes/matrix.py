@@ -30,7 +30,7 @@ WRITTEN = 14
 """Up to so many rows or columns the values are written into the cells."""
 
 CONFUSED = 0.3
-"""From this MAC on two modes are said to look alike."""
+"""From this MAC on two modes are reported as similar."""
 
 
 def mac_figure(
@@ -141,7 +141,7 @@ def auto_mac_figure(modal: ModalData) -> Figure:
 
 
 def alike(matrix: FloatArray) -> str:
-    """Say which modes look most alike."""
+    """State which modes look most alike."""
     if len(matrix) < 2:
         return "One mode"
     if not np.isfinite(matrix).all():
@@ -150,7 +150,7 @@ def alike(matrix: FloatArray) -> str:
     i, j = np.unravel_index(int(apart.argmax()), apart.shape)
     first, second = sorted((int(i) + 1, int(j) + 1))
     if apart[i, j] < 0.1:
-        return "Every mode looks like itself alone"
+        return "All modes are distinct"
     if apart[i, j] < CONFUSED:
         return f"All modes differ; {first} and {second} are the most alike, by {100 * apart[i, j]:.0f} %"
     return f"Modes {first} and {second} look alike by {100 * apart[i, j]:.0f} %"

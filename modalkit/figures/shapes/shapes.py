@@ -64,7 +64,7 @@ def shapes_figure(source: ModalData | Measured, predictor: Predictor | None = No
 
 
 def _nothing(shapes: Shapes) -> Figure:
-    """Say that there is no shape at a single point."""
+    """State that there is no shape at a single point."""
     title = f"{counted(len(shapes.frequency), 'mode')} at one test point: there is no shape to draw"
     note = "measure, or hit, more points"
     figure = new_figure(caption_height(title, note) + 0.25)

@@ -89,7 +89,7 @@ class Spatial:
 
 
 def in_space(modal: ModalData) -> bool:
-    """Tell whether modes are drawn in space: points off a plane, or measured along several axes or within it."""
+    """Return whether modes are drawn in space: points off a plane, or measured along several axes or within it."""
     nodes = [dof.node for dof in modal.dofs]
     if not all(node in modal.geometry for node in nodes):
         return False
@@ -98,7 +98,7 @@ def in_space(modal: ModalData) -> bool:
 
 
 def _flat(points: FloatArray, directions: FloatArray) -> bool:
-    """Tell whether points lie in a plane or on a line, and all move along one direction across it."""
+    """Return whether points lie in a plane or on a line, and all move along one direction across it."""
     if np.ptp(directions, axis=0).max() > 0.1:
         return False
     size = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
@@ -194,7 +194,7 @@ def spatial_figure(shapes: Spatial) -> Figure:
 
 
 def _note(shapes: Spatial) -> str:
-    """Say what the colours and lines are."""
+    """State what the colours and lines are."""
     parts = ["each scaled to its largest motion, blue against orange"]
     if shapes.lines:
         parts.append("grey: at rest")

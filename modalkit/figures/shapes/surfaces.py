@@ -26,6 +26,6 @@ def grid_values(points: FloatArray, values: FloatArray) -> tuple[FloatArray, Flo
 
 
 def spans(points: FloatArray) -> bool:
-    """Tell whether the points can be triangulated."""
+    """Return whether the points can be triangulated."""
     distinct = np.unique(points, axis=0)
     return len(distinct) >= 3 and bool(np.linalg.matrix_rank(distinct - distinct[0], tol=1e-9) == 2)

@@ -40,7 +40,7 @@ KINDS = {
     "short": ("chain too short", "o", 9, FAINT),
     "outside": ("outside the band", "^", 14, MUTED),
     "pruned": ("struck off by the fit", "s", 13, ORANGE),
-    "background": ("not told by the data", "D", 13, ORANGE),
+    "background": ("not determined by the data", "D", 13, ORANGE),
     "dropped": ("dropped by hand", "P", 20, INK),
     "mode": ("a mode", "o", 11, BLUE),
 }
@@ -101,7 +101,7 @@ def stabilisation_figure(
 
 
 def poles_title(origins: Origins, shown: int) -> str:
-    """Say how many modes there are and where they come from, and how many stable columns are none."""
+    """State how many modes there are and where they come from, and how many stable columns are none."""
     stable = sum(origin == "chain" for origin in origins.modes)
     parts = [f"{counted(len(origins.modes), 'mode')}: {stable} of {counted(shown, 'pole')}"]
     for origin, meaning in (("refinement", "added by the refinement"), ("named", "picked by hand")):
@@ -150,7 +150,7 @@ def _limits(model: ModalModel) -> tuple[float, float]:
 
 
 def _shown(model: ModalModel) -> BoolArray:
-    """Tell which poles are drawn: those in the band."""
+    """Return which poles are drawn: those in the band."""
     low, high = model.band
     return np.asarray((model.chart.frequency >= low) & (model.chart.frequency <= high))
 

@@ -79,7 +79,7 @@ def evolution_figure(title: str, note: str, panels: Sequence[Courses]) -> Figure
     Parameters
     ----------
     title, note : str
-        What the figure says, and what stands behind it.
+        What the figure states, and what stands behind it.
     panels : sequence of Courses
         One panel each.
 

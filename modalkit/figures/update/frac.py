@@ -28,7 +28,7 @@ def frac_figure(title: str, note: str, points: Sequence[str], bars: Mapping[str,
     Parameters
     ----------
     title, note : str
-        What the figure says, and what stands behind it.
+        What the figure states, and what stands behind it.
     points : sequence of str
         Names of the points.
     bars : mapping of str to (n_points,) array

@@ -1,7 +1,7 @@
 """What the JSON documents hold: names, types, units, meaning, and where in a result each field is taken from.
 
 A class is an object of a document, an annotation a field: its type, then a sentence, which ends with the unit of its
-numbers in brackets and says when it may be null, then :class:`modalkit.output.fields.Of` where the result calls it
+numbers in brackets and states when it may be null, then :class:`modalkit.output.fields.Of` where the result calls it
 otherwise. :func:`modalkit.output.fields.fill` makes the object of a result; tests hold what comes of it to the types.
 The page `docs/reference/json.md` is made of these.
 """

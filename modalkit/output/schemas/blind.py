@@ -18,7 +18,9 @@ class RateEntry(TypedDict):
         Maybe, "how often it is so; not whole where a class counts by its share; null for no share [-]"
     ]
     total: Annotated[int, "of how many, or trials behind the number [-]"]
-    rate: Annotated[Maybe, "`count / total`, or the number; null without any [-, or as the question says]"]
+    rate: Annotated[
+        Maybe, "`count / total`, or the number; null without any [-, or the unit of the question]"
+    ]
     low: Annotated[Maybe, "lower end of its 95 % interval; null for none [as `rate`]"]
     high: Annotated[Maybe, "upper end; null for none [as `rate`]"]
 

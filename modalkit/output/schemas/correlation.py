@@ -56,7 +56,7 @@ class CorrelationDocument(TypedDict):
         "by FRF: over the lines, or of modal constants where the test has modes only; empty for shapes without level",
     ]
     model_damping: Annotated[str | None, "where the damping of the model's FRFs is from; null without FRFs"]
-    warnings: Annotated[Sequence[str], "what the user ought to know"]
+    warnings: Annotated[Sequence[str], "what the user should know"]
 
 
 class ComparedPair(TypedDict):
@@ -79,4 +79,4 @@ class ComparisonDocument(TypedDict):
     unpaired_first: Annotated[Sequence[NumberedMode], "modes of the first without a partner"]
     unpaired_second: Annotated[Sequence[NumberedMode], "modes of the second without a partner"]
     degrees_of_freedom: Annotated[Sequence[str], "what both tests measured: `3+Z`"]
-    warnings: Annotated[Sequence[str], "what the user ought to know"]
+    warnings: Annotated[Sequence[str], "what the user should know"]

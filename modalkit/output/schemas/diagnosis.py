@@ -79,7 +79,7 @@ class EstimateEntry(TypedDict):
     ]
     unit: Annotated[str, "unit; `-` for a ratio"]
     low95: Annotated[
-        float | None, "lower end of the 95 % interval; null where the value is no number [`unit`]"
+        float | None, "lower end of the 95 % interval; null where the value is not a number [`unit`]"
     ]
     high95: Annotated[float | None, "upper end; null likewise [`unit`]"]
     at_bound: Annotated[bool, "whether the interval touches the end of the prior's range"]
@@ -90,7 +90,7 @@ class RankedEntry(TypedDict):
 
     effects: Annotated[
         Sequence[str],
-        "the set; one that occurs twice stands twice; `something_else` is a cause in no library",
+        "the set; one that occurs twice is listed twice; `something_else` is a cause in no library",
     ]
     probability: Annotated[
         float, "of this set, among all compared, no effect at all, and a cause in no library [-]"
@@ -253,7 +253,7 @@ class DiagnosisDocument(TypedDict):
     remainder: Annotated[RemainderEntry | None, "what the first row leaves beyond noise; null without gap"]
     something_else: Annotated[
         SomethingElseEntry | None,
-        "a cause that is in no library; null without gap, or where it was not weighed",
+        "a cause that is in no library; null without gap, or where it was not examined",
     ]
     included: Annotated[Mapping[str, float], "probability of each effect that it is among the causes [-]"]
     next_test: Annotated[Sequence[NextTestEntry], "what to measure next, best first"]
@@ -263,4 +263,4 @@ class DiagnosisDocument(TypedDict):
         Mapping[str, float],
         "rules that differ from the defaults, by name; empty where none does [unit of the rule]",
     ]
-    warnings: Annotated[Sequence[str], "what the user ought to know"]
+    warnings: Annotated[Sequence[str], "what the user should know"]

@@ -53,4 +53,4 @@ class LocalisationDocument(TypedDict):
     unchanged: Annotated[
         float | None, "probability that no region is changed, by `evidence`; null without it [-]"
     ]
-    warnings: Annotated[Sequence[str], "what the user ought to know"]
+    warnings: Annotated[Sequence[str], "what the user should know"]

@@ -73,9 +73,9 @@ class ModesDocument(TypedDict):
     points_rejected: Annotated[Sequence[str], "points, or FRFs, that are not used, each with the reason"]
     hits: Annotated[Sequence[HitEntry], "verdicts on the raw hits; empty where the file holds none"]
     window_decay_removed: Annotated[
-        float, "decay rate of the exponential window that was taken out of the damping; 0 for none [1/s]"
+        float, "decay rate of the exponential window that was removed from the damping; 0 for none [1/s]"
     ]
-    warnings: Annotated[Sequence[str], "what the user ought to know"]
+    warnings: Annotated[Sequence[str], "what the user should know"]
     nodes: Annotated[Sequence[NodeEntry], "places of the nodes; empty where the file has none"]
     trend: Annotated[
         TrendEntry | None,

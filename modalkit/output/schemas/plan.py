@@ -64,7 +64,7 @@ class BlindCase(TypedDict):
     test: Annotated[str, "`as it is`, or `advice followed`"]
     forecast: Annotated[str, "what was forecast, in words"]
     sigma: Annotated[float | None, "forecast distance to the nearest rival; null for infinite [sigma]"]
-    answered: Annotated[str, "what the diagnosis said"]
+    answered: Annotated[str, "what the diagnosis stated"]
     right: Annotated[str, "`yes`, `in the class`, or `no`"]
 
 

@@ -118,7 +118,7 @@ class UpdateDocument(TypedDict):
     parameters: Annotated[Sequence[UpdatedParameter], "what was updated"]
     pairs: Annotated[Sequence[UpdatedPair], "paired modes of all studies"]
     undetermined: Annotated[
-        Sequence[str], "parameters of which the data alone say less than was known before"
+        Sequence[str], "parameters that the data alone determine less than was known before"
     ]
     held: Annotated[
         Sequence[str],
@@ -136,4 +136,4 @@ class UpdateDocument(TypedDict):
         DeterminabilityEntry | None, "what the data determine; null if it was not asked"
     ]
     frf: Annotated[ByFrfs | None, "what only an update by FRFs has; null for one by frequencies"]
-    warnings: Annotated[Sequence[str], "what the user ought to know"]
+    warnings: Annotated[Sequence[str], "what the user should know"]

@@ -182,7 +182,7 @@ def predict_wet(predictor: Predictor, around: Environment, *, thick: bool) -> tu
 
 
 def _predictor(plain: Predictor, case: Case, start: Start) -> Predictor:
-    """Return the dry model of a start, looked at from the wet test, on the basis of the model without any."""
+    """Return the dry model of a start, observed from the wet test, on the basis of the model without any."""
     if start.values is None:
         return plain.for_test(case.measured, (_corrected(case),))
     return plain.for_test(case.measured, accepted_additions(start.values.items()))

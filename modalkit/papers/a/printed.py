@@ -67,7 +67,7 @@ class PrintedTable:
     models : tuple of Printed
         The models.
     notes : tuple of str
-        Said below the table.
+        Printed below the table.
     """
 
     number: int
@@ -104,10 +104,10 @@ MAC_NOTE = (
     "mixes neighbouring modes."
 )
 WET_MAC_NOTE = (
-    "The printed MAC falls to 54-78 % in the real tank, from what a synthetic test cannot have: shapes spoilt by the "
-    "extended hammer tip, by noise and by water that moves. Ours knows only what its own structure does (the "
-    "accelerometer, the water's mass) plus small noise, so where it is higher, that is no better result, "
-    "and where it is near, no confirmation."
+    "The printed MAC falls to 54-78 % in the real tank, from what a synthetic test cannot have: "
+    "shapes spoilt by the extended hammer tip, by noise and by water that moves. Ours includes only "
+    "the effects of its own structure (the accelerometer, the water's mass) plus small noise, so "
+    "where it is higher, that is no better result, and where it is near, no confirmation."
 )
 
 TABLES: tuple[PrintedTable, ...] = (

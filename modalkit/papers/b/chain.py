@@ -35,7 +35,7 @@ class Taped:
 
     @cached_property
     def predictor(self) -> Predictor:
-        """The study's model, looked at from the points of the test."""
+        """The study's model, observed from the points of the test."""
         return predictor_of(self.session.case)
 
     @property

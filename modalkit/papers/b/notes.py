@@ -1,4 +1,4 @@
-"""What is to be known of paper B's tables, said below each."""
+"""Notes below each of paper B's tables."""
 
 GAIN_NOTE = (
     "The sample test is synthetic; its responses are set to 0.74 of the truth, because the paper's updated areas "
@@ -13,8 +13,8 @@ EQUATIONS_NOTE = (
 SECTION_NOTES = (
     GAIN_NOTE,
     EQUATIONS_NOTE,
-    "Estimated values are those of a 31.5 x 4.6 mm section (region 1) and a 31.5 x 4.8 mm one (region 2, under "
-    "the tape); the text says 31 x 4.5 mm.",
+    "Estimated values are those of a 31.5 x 4.6 mm section (region 1) and a 31.5 x 4.8 mm one (region "
+    "2, under the tape); the text states 31 x 4.5 mm.",
     "Of the four parameters the frequencies determine ratios only; their common level comes from the level of the "
     "FRFs. How much heavier and stiffer region 2 is than region 1 was put into the test from this very table; that it "
     "comes out again shows that the chain runs, not that the tape is so.",
@@ -35,8 +35,8 @@ DAMPER_NOTES = (
 DAMPING_NOTES = (
     "The initial column is that of the section already updated (first stage) with the estimated alpha and beta, "
     "and beta_2 = 1e-7 s; on the original section mode 1 would have 0.95 %.",
-    "Of the forms of damping that the program knows, alpha and beta are not the best: see "
-    "docs/tutorials/papers.md for a loss factor.",
+    "Of the available forms of damping, alpha and beta are not the best: see docs/tutorials/papers.md "
+    "for a loss factor.",
     "Damping of the model is identified from the model's own FRFs at the eleven points, as the paper does it.",
     "Erratum: the header of the error columns has (test - model) / test; all twelve printed values have the "
     "opposite sign, (model - test) / test, which is used here.",
@@ -45,7 +45,8 @@ FRAC_NOTES = (
     "All values are ours; the paper prints bars only: about 0.1 before and after the geometry is updated (Fig. "
     "6), 'good' after the damping is (Fig. 9). Eq. 6 needs the conjugate transpose, as used here; the sum runs "
     "over 5-600 Hz.",
-    "The paper's first stage knows no damping, and an undamped model has FRAC of 0.1 to 0.3 whatever its section; "
-    "the columns without that word have the estimated alpha and beta. FRAC of receptances is ruled by the first "
-    "resonance: while the damping is wrong, or the peaks do not overlap, it is low however alike the shapes are.",
+    "The paper's first stage has no damping, and an undamped model has FRAC of 0.1 to 0.3 whatever "
+    "its section; the columns without that word have the estimated alpha and beta. FRAC of "
+    "receptances is ruled by the first resonance: while the damping is wrong, or the peaks do not "
+    "overlap, it is low however alike the shapes are.",
 )

@@ -123,7 +123,7 @@ def _mean(values: FloatArray, test: FloatArray) -> float:
 
 
 def _frac(taped: Taped, update: Staged) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return FRAC by point and in the mean; the first stage knows no damping, so there are columns without."""
+    """Return FRAC by point and in the mean; the first stage has no damping, so there are columns without."""
     bare = printed.undamped(taped.regions)
     states = {
         "before, undamped": bare,

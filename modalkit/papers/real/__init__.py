@@ -1,4 +1,4 @@
-"""Real structures of which more is known than the diagnosis is told."""
+"""Real structures of which more is known than the diagnosis is given."""
 
 from modalkit.papers.real.case import Case, Fact, Source
 from modalkit.papers.real.cases import CASES

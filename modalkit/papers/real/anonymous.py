@@ -1,4 +1,4 @@
-"""Write a study without what its name, title and remarks give away."""
+"""Write a study without what its name, title and comments reveal."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def write_anonymous(source: Source, home: Path, folder: Path, number: int) -> Pa
 
 
 def without_tables(text: str, drop: tuple[str, ...]) -> str:
-    """Return a study without some of its tables, and without remarks on lines of their own."""
+    """Return a study without some of its tables, and without comments on lines of their own."""
     lines, keep = [], True
     for line in text.splitlines():
         header = _HEADER.match(line)
@@ -86,7 +86,7 @@ def _untitled(text: str, number: int) -> str:
 
 
 def _copy(file: Path, target: Path) -> None:
-    """Copy a file; of a table of modes without its remarks."""
+    """Copy a file; of a table of modes without its comments."""
     try:
         if file.suffix.lower() != ".csv":
             shutil.copyfile(file, target)

@@ -1,4 +1,4 @@
-"""A test of a real structure of which more is known than the diagnosis is told."""
+"""A test of a real structure of which more is known than the diagnosis is given."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Case:
     sources : tuple of Source
         The studies, diagnosed together.
     withheld : str
-        What the diagnosis is not told.
+        What the diagnosis is not given.
     known : str
         What is truly known, in a few words.
     source : str
@@ -80,7 +80,7 @@ class Case:
     accepted : tuple of frozenset of str
         Sets of effects that are the right answer; one empty set where nothing is missing.
     equivalent : tuple of frozenset of str
-        Sets that these data cannot tell from the right one, so that a class may list them.
+        Sets that these data cannot separate from the right one, so that a class may list them.
     stands_in : tuple of frozenset of str
         Sets that say the same under another name, where the right ones are not in the library.
     why : str

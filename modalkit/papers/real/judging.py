@@ -10,12 +10,12 @@ from modalkit.papers.real.case import Case, Fact
 
 RULES = """\
 * right: it names a set of effects that is true; or a class that holds a true set and else only sets that
-  these data cannot tell from it;
-* partly: it says `unknown` where the library has the effect; or names a part of the truth only; or holds a
+  these data cannot separate from it;
+* partly: it answers `unknown` where the library has the effect; or names a part of the truth only; or holds a
   true set beside a false one; or is right but for a known number outside its 95 % interval or a place it does
   not point to;
-* wrong: it names something else, says `none` where something is, or anything but `none` where nothing is;
-* with the effect left out of the library: `unknown` is right, and so is what says the same under another
+* wrong: it names something else, answers `none` where something is, or anything but `none` where nothing is;
+* with the effect left out of the library: `unknown` is right, and so is the same effect under another
   name; such a stand-in beside others, or with something added to it, is partly right; all else is wrong.
 """
 
@@ -44,7 +44,7 @@ def judge(case: Case, answer: Answer) -> Judgement:
     case : Case
         What is known.
     answer : Answer
-        What is said.
+        The answer.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def judge(case: Case, answer: Answer) -> Judgement:
     if frozenset() in case.accepted:
         return _of_nothing(answer)
     if answer.verdict == "none":
-        return Judgement("wrong", "says that nothing is missing")
+        return Judgement("wrong", "states that nothing is missing")
     if case.removed:
         return _of_left_out(case, answer)
     if answer.verdict == "unknown":
@@ -101,19 +101,19 @@ def _of_numbers(case: Case, answer: Answer) -> Judgement:
 
 
 def estimates(case: Case, answer: Answer) -> list[tuple[Fact, Estimate]]:
-    """Return the known numbers with what the most probable true set says of them."""
+    """Return the known numbers with their values in the most probable true set."""
     row = next((row for row in answer.ranking if row.effects in case.accepted), None)
     stated = {} if row is None else row.parameters
     return [(fact, stated[fact.parameter]) for fact in case.facts if fact.parameter in stated]
 
 
 def covers(estimate: Estimate, fact: Fact) -> bool:
-    """Tell whether a 95 % interval reaches what is known."""
+    """Return whether a 95 % interval reaches what is known."""
     if math.isnan(estimate.low) or math.isnan(estimate.high):
         return fact.low <= estimate.value <= fact.high
     return estimate.low <= fact.high and fact.low <= estimate.high
 
 
 def points_to(case: Case, answer: Answer) -> bool:
-    """Tell whether one of the places of an answer lies where it should."""
+    """Return whether one of the places of an answer lies where it should."""
     return any(low <= x <= high for low, high in case.places for x, _ in answer.locations)

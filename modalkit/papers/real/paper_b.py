@@ -20,7 +20,7 @@ _TAPED = Case(
     accepted=sets("damping_patch"),
     equivalent=sets("uniform_damping"),
     stands_in=sets("uniform_damping"),
-    why="six damping ratios without shapes do not say where the damping is",
+    why="six damping ratios without shapes do not determine where the damping is",
     facts=(Fact("damping_patch.extent", 0.3, 0.3, "0.3 m of tape"),),
     places=(_TAPE, _MIRRORED),
 )

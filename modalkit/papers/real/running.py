@@ -1,4 +1,4 @@
-"""Have real structures diagnosed, each in a process of its own that is not told what is known."""
+"""Have real structures diagnosed, each in a process of its own that is not given what is known."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def run_real(
     diagnose: DiagnoseTogether | None = None,
     progress: Callable[[RealOutcome], None] | None = None,
 ) -> tuple[RealOutcome, ...]:
-    """Diagnose real structures and judge what is said of them.
+    """Diagnose real structures and judge the answers.
 
     Parameters
     ----------

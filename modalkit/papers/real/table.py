@@ -1,4 +1,4 @@
-"""What is truly known of real structures beside what is said, as a table."""
+"""Known truth of real structures and the answers, as a table."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from modalkit.papers.real.running import RealOutcome
 
 
 def real_table(outcomes: Sequence[RealOutcome]) -> pd.DataFrame:
-    """Return a table of cases: what is known and what is said, the gap before and after, and how it is judged."""
+    """Return a table of cases: what is known and what was answered, the gap before and after, and how it is judged."""
     return pd.DataFrame([row_of(o) for o in outcomes])
 
 
@@ -34,13 +34,13 @@ def row_of(outcome: RealOutcome) -> dict[str, str]:
 
 
 def statement(document: Mapping[str, Any]) -> str:
-    """Return the verdict with the sets of effects it names, and whether their size is hardly believable."""
+    """Return the verdict with the sets of effects it names, and whether their size is implausible."""
     cause = document["cause"]
     if cause["verdict"] in ("none", "unknown"):
         return str(cause["verdict"])
     names = "; ".join(" + ".join(s) for s in cause["sets"])
     first = _ranked(document)[0]
-    doubt = "" if first.get("plausible", True) else " (size hardly believable)"
+    doubt = "" if first.get("plausible", True) else " (size implausible)"
     return f"{cause['verdict']}: {names}{doubt}"
 
 

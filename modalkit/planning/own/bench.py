@@ -31,7 +31,7 @@ from updating.models.state import NOMINAL
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 
-NO_SEVERITY = "the forecast knows no severity of it on such a model"
+NO_SEVERITY = "the forecast has no severity scale for it on such a model"
 """Why an effect of the library, or one of a user's own, is left out."""
 
 
@@ -52,7 +52,7 @@ class OwnBench:
     design : Design
         The test as it is.
     band : (float, float)
-        What is looked at [Hz].
+        Band examined [Hz].
     hits : int
         Hits at each point [-].
     statement, left_out : tuples of str
@@ -118,7 +118,7 @@ class OwnBench:
     def change(self, family: Family, q: float, place: float) -> FloatArray:
         """Return what an effect of a severity [SI] at a place changes of the data, in one row [-].
 
-        A state that has lost its stiffness changes nothing that could be told.
+        A state that has lost its stiffness changes nothing that could be detected.
         """
         zero = self._nominal.residual
         if not q:
@@ -193,7 +193,7 @@ class OwnBench:
         return own_changes(design, self.layout, self.problem.names, above, self.hits, worth)
 
     def follows(self, change: Change) -> bool:
-        """Tell whether a trial can follow a change: shapes without a hammer have no other places."""
+        """Return whether a trial can follow a change: shapes without a hammer have no other places."""
         return change.design.stations == self.design.stations or not self.layout.blank.bare
 
     def right(self, case: Case) -> frozenset[str]:

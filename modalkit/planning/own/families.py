@@ -1,7 +1,7 @@
 """Effects of the library on a study's own model as families: each region, joint, support and node set by its name.
 
 What a severity is, where it begins and what is asked about stands here; what it does to the model, the effect itself
-says, as in a diagnosis.
+states, as in a diagnosis.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a study says of a test of its own model: points, modes and doubts from the data, or from what is planned."""
+"""What a study states about a test of its own model: points, modes and doubts from the data, or as planned."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ GAS = 10.0
 """A surrounding of less density moves nothing that can be seen [kg/m3]."""
 
 FIRST_MODES, MANY = 5, 40
-"""Modes that are looked at where nothing says the band, and most that a band may hold [-]."""
+"""Modes that are examined where no band is stated, and most that a band may hold [-]."""
 
 FAINT = 0.02
 """A mode moves no point if it moves all by less than this share of what the middle mode does [-]."""
 
 ALONG = 8
-"""Points along a beam where nothing says which are hit."""
+"""Points along a beam where the points hit are not stated."""
 
 HITS = 5
-"""Hits at each point where nothing says how many [-]."""
+"""Hits at each point where their number is not stated [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +67,12 @@ def bench_of(study: Study) -> OwnBench:
     Parameters
     ----------
     study : Study
-        With data or without; what no data tell is taken by default, and said so.
+        With data or without; what the data do not determine is taken by default, and reported.
 
     Raises
     ------
     StudyError
-        If nothing says where the structure is hit, or its band holds too few modes.
+        If the points to be hit are not stated, or its band holds too few modes.
     """
     test = _with_data(study) if study.test.files or study.test.modes else _planned(study)
     shown = _shown(test.predictor)
@@ -120,7 +120,7 @@ def _on_damping(design: Design) -> list[str]:
     stated = (
         "damping as the model expects it"
         if design.damping_known
-        else "the model expects no damping: it tells nothing"
+        else "the model states no expected damping: damping is not used"
     )
     return [stated, *(["with the baseline, what changed since is asked about"] if design.baseline else [])]
 
@@ -186,13 +186,13 @@ def _planned(study: Study) -> _Test:
     test = predictor.for_test(points.test(study, sensor))
     frequency, damping, shape = by_default(len(ranks))
     whence = (
-        "as planned" if stated is not None else "by default, since no data and no [test] points say where"
+        "as planned" if stated is not None else "by default, since neither data nor [test] points state where"
     )
     statement = (
         f"{len(points.hit)} points hit, the sensor at point {points.nodes[sensor]} ({whence})",
         f"{len(ranks)} modes in {band[0]:g} to {band[1]:g} Hz",
-        f"no data tell how well: frequencies to {100 * frequency[0]:g} %, damping to {100 * damping[0]:g} %, constants "
-        f"to {100 * shape[0]:g} % of their mode's largest are taken",
+        f"assumed, without data: frequencies to {100 * frequency[0]:g} %, damping to {100 * damping[0]:g} "
+        f"%, constants to {100 * shape[0]:g} % of their mode's largest",
     )
     known = Known(frequency, damping, shape)
     return _Test(test, case.tolerances, ranks, known, band, table.hits or HITS, statement)
@@ -208,7 +208,7 @@ def _spaced(study: Study, spec: Spec) -> PlannedPoints:
     """
     if not spec.outlined:
         raise StudyError(
-            f"{study.path}: nothing says where the structure will be hit; give [test] points, a node and its direction "
+            f"{study.path}: the points to be hit are not stated; give [test] points, a node and its direction "
             'as "12+Z" or [x, y, z, "+z"] each, or data'
         )
     points = spaced(spec, ALONG if spec.kind == "beam" else None)

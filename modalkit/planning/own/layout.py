@@ -13,7 +13,7 @@ from updating.prediction.predict import Predictor
 
 FREQUENCY_SIGMA, DAMPING_SIGMA, SHAPE_SIGMA = 2e-4, 0.05, 0.02
 """Relative standard deviations of identified frequencies and damping ratios, and that of modal constants over each
-mode's largest, where no data say [-]."""
+mode's largest, where no data state it [-]."""
 
 REPEATED = 4
 """Modes that are predicted beyond those needed, so that each finds its partner where some change places [-]."""
@@ -26,7 +26,7 @@ class Layout:
     Parameters
     ----------
     blank : Measured
-        Points and FRFs of all stations; its modes are not looked at, and modes without a partner in the model are
+        Points and FRFs of all stations; its modes are not used, and modes without a partner in the model are
         none of its: the data are the model's own.
     station : (n_frf,) int array
         Station of each FRF.
@@ -37,7 +37,7 @@ class Layout:
     roving : bool
         Whether it is the sensor that moves.
     drive : int or None
-        Station where the end that stays sits, where it is none of the test's.
+        Station where the end that stays sits, where it is not one of the test's.
     """
 
     blank: Measured
@@ -109,7 +109,7 @@ def _directions(test: Measured, spots: tuple[Spot, ...]) -> FloatArray | None:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """How well a test knows its data, mode by mode.
+    """Uncertainty of the data of a test, mode by mode.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class Known:
 
 
 def by_default(count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the standard deviations of frequencies, damping and constants of so many modes where no data say [-]."""
+    """Return the standard deviations of frequencies, damping and constants of so many modes without data [-]."""
     return np.full(count, FREQUENCY_SIGMA), np.full(count, DAMPING_SIGMA), np.full(count, SHAPE_SIGMA)
 
 

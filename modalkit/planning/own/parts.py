@@ -160,7 +160,7 @@ def _spoken(support: Support) -> str:
 
 
 def where_supports_are(predictor: Predictor) -> list[str]:
-    """Return the place of each support: names that a model numbers say nothing by themselves."""
+    """Return the place of each support: names that a model numbers mean nothing by themselves."""
     imported = predictor.spec.imported
     supports = () if imported is None else imported.supports
     return [f"{_spoken(one)} is about {place(one.centre.tolist())}" for one in supports]

@@ -34,7 +34,7 @@ def overlaid_chart(both: Overlaid, name: str = "frfs", *, tests: int = 1) -> Cha
         series = [
             Series("measured", "line", None, size(test.values[i], keep), "ink"),
             Series(
-                "model as it stands",
+                "unchanged model",
                 "line",
                 None,
                 size(before.model.values[i], keep),
@@ -60,6 +60,6 @@ def overlaid_chart(both: Overlaid, name: str = "frfs", *, tests: int = 1) -> Cha
 
 
 def overlaid_title(both: Overlaid) -> str:
-    """Say the median FRAC before and after."""
+    """State the median FRAC before and after."""
     median = f"{counted(len(both.before.frac), 'FRF')}: median FRAC {np.median(both.before.frac):.3f}"
     return median if both.after is None else f"{median} before, {np.median(both.after.frac):.3f} after"

@@ -35,7 +35,7 @@ def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") ->
         series.append(
             Series("", "links", None, rows, "faint", {"low": errors.before, "high": errors.after, "x": []})
         )
-    series.append(_dots("model as it stands", rows, errors, errors.before, hollow=True))
+    series.append(_dots("unchanged model", rows, errors, errors.before, hollow=True))
     if errors.after is not None:
         series.append(_dots(after, rows, errors, errors.after))
     return Chart(
@@ -50,7 +50,7 @@ def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") ->
 
 
 def gap_title(errors: ModeErrors, after: str = "after") -> str:
-    """Say how many modes are outside their bands, before and after; without bands, how far they are off."""
+    """State how many modes are outside their bands, before and after; without bands, how far they are off."""
     name = "all data" if errors.channel == "combined" else METRICS[errors.channel]
     quantity = f"{name[:1].upper()}{name[1:]} of {counted(len(errors.frequency), 'mode')}"
     band = errors.doubt if errors.doubt is not None else errors.floor
@@ -64,8 +64,8 @@ def gap_title(errors: ModeErrors, after: str = "after") -> str:
     counts = [int(np.sum(np.abs(v) > band)) for v in (errors.before, errors.after) if v is not None]
     if len(counts) == 1:
         outside = "none" if not counts[0] else f"{counts[0]}"
-        return f"{quantity}: {outside} outside what {what} make (2σ)"
-    return f"{quantity}: {counts[0]} outside what {what} make (2σ) before, {counts[1] or 'none'} {after}"
+        return f"{quantity}: {outside} outside the band of {what} (2σ)"
+    return f"{quantity}: {counts[0]} outside the band of {what} (2σ) before, {counts[1] or 'none'} {after}"
 
 
 def _span(values: FloatArray, write: Callable[[float], str]) -> str:
@@ -81,7 +81,7 @@ def _text(errors: ModeErrors, after: str) -> str:
         for name, band in (("dark band: noise", errors.floor), ("light: with the tolerances", errors.doubt))
         if band is not None
     ]
-    dots = f"Rings: the model as it stands{f'; dots: {after}' if errors.after is not None else ''}"
+    dots = f"Rings: the unchanged model{f'; dots: {after}' if errors.after is not None else ''}"
     return f"{'; '.join([dots, *bands])}."
 
 

@@ -1,4 +1,4 @@
-"""Matrices as cells: MAC, correlations, what a test tells apart."""
+"""Matrices as cells: MAC, correlations, separations of a test."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ async function space(figure, given, load) {
     if (made.list) place.append(made.list);
     moving.add(made);
   } catch (error) {
-    fill(place, h("p", { class: "muted" }, "This browser draws nothing in three dimensions."));
+    fill(place, h("p", { class: "muted" }, "This browser cannot draw in three dimensions."));
     console.warn(error);
   }
 }

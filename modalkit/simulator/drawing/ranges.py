@@ -13,7 +13,7 @@ KINDS = ("beam", "plate", "solid", "frame", "ribbed", "bracket")
 
 @dataclass(frozen=True)
 class DrawRanges:
-    """What may be drawn; together with the seed it says everything about a run.
+    """What may be drawn; together with the seed it defines a run completely.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class DrawRanges:
         shares = ("plates", "none", "pairs", "triples", "outside", "mild", "strong", "baseline")
         wrong = [name for name in shares if not 0.0 <= getattr(self, name) <= 1.0]
         if wrong:
-            raise StudyError(f"plan: {wrong[0]} = {getattr(self, wrong[0])} is no share; give 0 to 1")
+            raise StudyError(f"plan: {wrong[0]} = {getattr(self, wrong[0])} is not a share; give 0 to 1")
         for names in (("none", "pairs", "triples", "outside"), ("mild", "strong")):
             if sum(getattr(self, name) for name in names) > 1.0 + 1e-9:
                 raise StudyError(f"plan: the shares {', '.join(names)} add up to more than 1")

@@ -169,7 +169,7 @@ def _fit_theory(rng: np.random.Generator, setup: Setup) -> Setup:
 
 
 def lacks_shear(setup: Setup) -> bool:
-    """Tell whether the study's theory lacks shear that shows: then shear is hidden, alone or with another."""
+    """Return whether the study's theory lacks shear that shows: then shear is hidden, alone or with another."""
     return setup.theory == "euler-bernoulli" and setup.shear_shift > _SHEAR_SHOWS
 
 

@@ -1,4 +1,4 @@
-"""What may be hidden: each secret draws its parameters, changes the rig, and knows what answers are right."""
+"""What may be hidden: each hidden effect draws its parameters, changes the test, and states which answers are right."""
 
 from dataclasses import replace
 

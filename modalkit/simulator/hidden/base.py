@@ -18,22 +18,22 @@ Act = Callable[[Scene, Values], Scene]
 
 
 def everywhere(setup: Setup) -> bool:
-    """Tell that any setup can have it."""
+    """State that any setup can have it."""
     return True
 
 
 def is_beam(setup: Setup) -> bool:
-    """Tell whether the specimen is a beam."""
+    """Return whether the specimen is a beam."""
     return setup.kind == "beam"
 
 
 def is_plate(setup: Setup) -> bool:
-    """Tell whether the specimen is a plate."""
+    """Return whether the specimen is a plate."""
     return setup.kind == "plate"
 
 
 def is_clamped(setup: Setup) -> bool:
-    """Tell whether the specimen is clamped."""
+    """Return whether the specimen is clamped."""
     return bool(setup.clamped)
 
 
@@ -71,25 +71,25 @@ class HiddenEffect:
     act : callable
         ``act(scene, values)`` returns the changed scene.
     applies : callable
-        Tells whether a setup can have it.
+        Whether a setup can have it.
     equals : callable
         ``equals(setup, values)``: other names that describe exactly the same change of the data.
     places : callable
         ``places(setup, values)``: where it sits, in model axes.
     outside : bool
-        Whether it is drawn among what libraries do not know.
+        Whether it is drawn among what libraries do not have.
     known_as : str or None
         Its name in the library of the diagnosis, None where that is not expected to know it; left out, its own.
     graded : bool
         Whether it comes in different strengths.
     exclusive : str
-        Two effects with the same seat cannot be there at once; empty for none.
+        Two effects with the same location cannot be there at once; empty for none.
     metric : {"frequency", "damping", ""}
         In which of the two the gap that it makes shrinks; empty for neither.
     solid : bool
         Whether a body of bricks can have it.
     kinds : tuple of str
-        Kinds of specimen that it is for; empty for beams, plates and, where ``solid`` says so, bricks.
+        Kinds of specimen that it is for; empty for beams, plates and, where ``solid`` states so, bricks.
     stated : callable
         ``stated(setup, values)``: the parameters as the library defines them, where the rig's differ.
     share : float
@@ -122,7 +122,7 @@ class HiddenEffect:
         return self.known_as is not None
 
     def fits(self, setup: Setup) -> bool:
-        """Tell whether the specimen can have it, of what it is made of too."""
+        """Return whether the specimen can have it, of what it is made of too."""
         if self.kinds or setup.by_matrices:
             return setup.kind in self.kinds and self.applies(setup)
         return self.applies(setup) and (self.solid or setup.kind != "solid")
@@ -170,7 +170,7 @@ def place_of(setup: Setup, values: Values) -> Place:
 
 
 def only_level(setup: Setup, factor: float) -> bool:
-    """Tell whether a section that is wider by a factor shows in the level alone.
+    """Return whether a section that is wider by a factor shows in the level alone.
 
     Parameters
     ----------

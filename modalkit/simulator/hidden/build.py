@@ -1,4 +1,4 @@
-"""What the structure itself is, and no study says: taper, rib, gradient, arch, stress locked in, air behind it."""
+"""What the structure itself is, and no study states: taper, rib, gradient, arch, stress locked in, air behind it."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ KNOWN_SINCE: Mapping[str, str] = MappingProxyType(
         "drift": "drift",
     }
 )
-"""Effects that were drawn as what no library knows, and that the library has learnt since: its name for each.
+"""Effects that were drawn as effects outside the library, and that the library has gained since: its name for each.
 
 They are drawn as before, among those outside, so that seeds keep their trials; what answer is right goes by this list.
 """

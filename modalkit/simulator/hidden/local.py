@@ -86,7 +86,7 @@ def _draw_soft(rng: np.random.Generator, setup: Setup, strength: float) -> Value
     """Draw a smooth, a rectangular or a crack-like loss, or a gain as of a rib or a repair; what counts is its
     compliance.
 
-    A solid gets a slot. What it costs is more than the section that is left, so no compliance is told.
+    A solid gets a slot. What it costs is more than the section that is left, so no compliance is stated.
     """
     form = _FORMS[setup.kind][int(rng.integers(len(_FORMS[setup.kind])))]
     stiffer = form in _EXTENTS and rng.random() < _STIFFER

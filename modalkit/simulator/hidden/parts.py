@@ -60,7 +60,7 @@ def act_heavy(scene: Scene, values: Values) -> Scene:
 
 
 def act_loose(key: str, firm: Callable[[Any], float]) -> Act:
-    """Return what leaves a joint a stiffness, stated by ``key``, of what ``firm`` says it had as drawn."""
+    """Return what leaves a joint a stiffness, stated by ``key``, of what ``firm`` states it had as drawn."""
 
     def act(scene: Scene, values: Values) -> Scene:
         return _with(scene, "loose", (values["joint"], values[key] / firm(drawn(scene.setup))))
@@ -83,7 +83,7 @@ def _with(scene: Scene, field: str, more: Any) -> Scene:
 
 
 def at(label: str) -> Callable[[Setup, Values], tuple[Place, ...]]:
-    """Return what says where a part, a joint or a foot is."""
+    """Return the location of a part, a joint or a foot."""
     return lambda setup, values: (drawn(setup).place_of(values[label]),)
 
 

@@ -124,7 +124,7 @@ def _act_absorber(scene: Scene, values: Values) -> Scene:
 
 
 def cantilever(setup: Setup) -> bool:
-    """Tell whether the specimen is a beam that is held at its start alone."""
+    """Return whether the specimen is a beam that is held at its start alone."""
     return is_beam(setup) and setup.clamped == ("x0",)
 
 

@@ -60,7 +60,7 @@ def _draw_slope(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
 
 
 def clamped_at_both_ends(setup: Setup) -> bool:
-    """Tell whether both ends along x are clamped, so that they cannot approach each other."""
+    """Return whether both ends along x are clamped, so that they cannot approach each other."""
     return {"x0", "x1"} <= set(setup.clamped)
 
 
@@ -111,7 +111,7 @@ def _turning(body: Body, stiffness: float) -> Body:
 
 
 def can_show_levels(setup: Setup) -> bool:
-    """Tell whether hits of one point span some two to one in force."""
+    """Return whether hits of one point span some two to one in force."""
     return setup.level_scatter >= 0.3 and setup.hits >= 4
 
 

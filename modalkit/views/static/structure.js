@@ -81,7 +81,7 @@ export function structure(root, options) {
     tabindex: "0",
     role: "img",
     "aria-label":
-      "the structure, its regions coloured by probability; arrow keys turn it, plus and minus bring it near",
+      "the structure, its regions coloured by probability; arrow keys turn it, plus and minus zoom",
   });
   const tip = h("div", { class: "tip", hidden: true });
   const frame = h("div", { class: "canvas" }, canvas, tip);

@@ -8,7 +8,7 @@ export function viewer(root, { kept = false } = {}) {
   const canvas = h("canvas", {
     tabindex: "0",
     role: "img",
-    "aria-label": "the structure as it moves; arrow keys turn it, plus and minus bring it near",
+    "aria-label": "the structure as it moves; arrow keys turn it, plus and minus zoom",
   });
   const tip = h("div", { class: "tip", hidden: true });
   const frame = h("div", { class: "canvas" }, canvas, tip);
@@ -196,7 +196,7 @@ function caption(page, mode, view) {
   const whose = view.models.length > 1 ? ` (${whole.name})` : "";
   const complex = shape.mpc < 0.95 ? ", complex: its points pass through rest one after another" : "";
   const parts = [`Mode ${shape.mode} at ${fixed(shape.frequency_hz, 3)} Hz, MPC ${fixed(shape.mpc, 3)}${complex}.`];
-  if (view.flat) parts.push("This browser draws nothing in three dimensions (no WebGL).");
+  if (view.flat) parts.push("This browser cannot draw in three dimensions (no WebGL).");
   if (model) {
     const error = `${model.error_percent > 0 ? "+" : ""}${fixed(model.error_percent, 2)} %`;
     const grey = view.options.model === "over" ? ", grey" : "";

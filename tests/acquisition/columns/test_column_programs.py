@@ -124,7 +124,7 @@ def test_words_behind_the_numbers_are_no_rows(tmp_path: Path, trailer: str) -> N
 )
 def test_a_damaged_last_row_is_no_trailer(tmp_path: Path, line: str) -> None:
     (tmp_path / "a.txt").write_text(TABLE + line)
-    with pytest.raises(InputError, match=r"line 7.*: .* (columns|is no number)"):
+    with pytest.raises(InputError, match=r"line 7.*: .* (columns|is not a number)"):
         read_frf_columns(tmp_path / "a.txt", FRF)
 
 

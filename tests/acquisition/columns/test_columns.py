@@ -114,9 +114,9 @@ def test_a_time_column_gives_the_rate_even_with_few_digits(tmp_path, records):
 @pytest.mark.parametrize(
     ("before", "after", "message"),
     [
-        ("", "0.1,0.2\n", r"line 42: 2 columns where the block began with 3"),
-        ("", "0.1,oops,0.3\n", r"line 42, column 1: 'oops' is no number"),
-        ("", "0.1,nan,0.3\n", r"line 42, column 1: 'nan' is no number"),
+        ("", "0.1,0.2\n", r"line 42: 2 columns, but the block began with 3"),
+        ("", "0.1,oops,0.3\n", r"line 42, column 1: 'oops' is not a number"),
+        ("", "0.1,nan,0.3\n", r"line 42, column 1: 'nan' is not a number"),
         ("", "0.1,0.2,0.3,0.4\n", r"line 42: 4 columns"),
     ],
 )
@@ -138,7 +138,7 @@ def test_bad_lines_are_named(tmp_path, records, before, after, message):
         ('unit = "lbf"', 'unit = "g"', r"column 'hammer': 'g' is no unit of force"),
         ('unit = "lbf"', 'unti = "lbf"', r"\[\[column\]\] 1: unknown key 'unti' \(is 'unit' meant\?\)"),
         ('"force"', '"fource"', r"quantity = 'fource' \(is 'force' meant\?\)"),
-        ('direction = "-z"', 'direction = "up"', r"\[\[column\]\] 1: direction 'up' is none"),
+        ('direction = "-z"', 'direction = "up"', r"\[\[column\]\] 1: direction 'up' is invalid"),
         (
             'name = "acc 1"',
             'name = "acc 9"',
@@ -175,7 +175,7 @@ def test_files_that_do_not_go_together_are_named(tmp_path, records):
     with pytest.raises(InputError, match="cannot be read"):
         read_layout(tmp_path / "none.toml")
     (tmp_path / "c.csv").write_bytes(b"\x00\x01" * 200)
-    with pytest.raises(InputError, match="binary, no column text"):
+    with pytest.raises(InputError, match="binary, not column text"):
         read_columns(tmp_path / "c.csv", layout)
     (tmp_path / "d.csv").write_text("nothing here\n")
     with pytest.raises(InputError, match="no line of 3 or more numbers"):
@@ -319,7 +319,7 @@ LVM_DAMAGE = [
     (LVM.replace("Decimal_Separator\t,\n", ""), "a header cannot be read"),
     (LVM[: LVM.index("***End")] + "***End_of_" + LVM[LVM.index("Delta_X") :], "before the first segment"),
     (JOINED, "stands in the header that begins at line"),
-    (LVM.replace("Channels\t2\nS", "Channels\t"), "is no number of channels"),
+    (LVM.replace("Channels\t2\nS", "Channels\t"), "is not a number of channels"),
 ]
 
 

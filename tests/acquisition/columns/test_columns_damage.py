@@ -53,7 +53,7 @@ BEHIND_HEADINGS = ["1.0,{,a,{", "{,a,2.5e-01", "{,{,12"]
 @pytest.mark.parametrize("line", BEHIND_HEADINGS)
 def test_a_broken_row_behind_the_headings_asked_for_is_no_line_of_words(tmp_path, line):
     (tmp_path / "a.csv").write_text(f"hammer,acc 1,acc 2\n{line}\n" + "1.0,2.0,3.0\n" * 5)
-    with pytest.raises(InputError, match=r"line 2: .* holds a number and is no row of numbers"):
+    with pytest.raises(InputError, match=r"line 2: .* contains a number but is not a row of numbers"):
         read_columns(tmp_path / "a.csv", LAYOUT)
 
 
@@ -88,7 +88,7 @@ def test_a_cut_row_behind_a_blank_one_is_a_fault(tmp_path, line):
 @pytest.mark.parametrize("content", [b"hammer,acc 1,acc 2\n1,2,3\n\x041,2,3\n", b"1,2,3\n" * 2000 + b"\0"])
 def test_control_characters_are_no_text(tmp_path, content):
     (tmp_path / "a.csv").write_bytes(content)
-    with pytest.raises(InputError, match="damaged, or binary"):
+    with pytest.raises(InputError, match="damaged or binary"):
         read_columns(tmp_path / "a.csv", LAYOUT)
 
 
@@ -99,7 +99,7 @@ def test_damage_where_a_row_has_two_columns(tmp_path):
     assert read_columns(tmp_path / "a.csv", layout).points[0].force.shape == (1, 4)
     for row in ("1.0,2.0P+00", "5.5e-010.00x0e+00", "*INCLUDE9469e-01,2.0"):
         (tmp_path / "a.csv").write_text(f"f,a\n{row}\n" + "1.0,2.0\n" * 4)
-        with pytest.raises(InputError, match="is nearly a line of numbers"):
+        with pytest.raises(InputError, match="is almost a line of numbers"):
             read_columns(tmp_path / "a.csv", layout)
 
 

@@ -183,7 +183,7 @@ def test_one_frf_in_two_files_is_refused(tmp_path):
     ("rule", "says"),
     [
         ({"match": "p1.csv", "node": 3, "column": "ree"}, r"\[\[file\]\] 1: no \[\[column\]\] is 'ree'"),
-        ({"match": "p1.csv", "node": 3, "direction": "up"}, r"\[\[file\]\] 1: direction 'up' is none"),
+        ({"match": "p1.csv", "node": 3, "direction": "up"}, r"\[\[file\]\] 1: direction 'up' is invalid"),
     ],
 )
 def test_a_rule_that_means_nothing_is_refused(rule, says):
@@ -203,9 +203,9 @@ def test_a_layout_takes_units_as_a_study_does():
     ("more", "message"),
     [
         ({"nodes": {"1": ["80 mn", 0, 0]}}, r"\[nodes\] 1: '80 mn'"),
-        ({"nodes": {"1": ["80 kg", 0, 0]}}, r"\[nodes\] 1: '80 kg' is no quantity in m"),
+        ({"nodes": {"1": ["80 kg", 0, 0]}}, r"\[nodes\] 1: '80 kg' is not a quantity in m"),
         ({"nodes": {"1": ["80 mm", 0]}}, r"\[nodes\] 1 = \['80 mm', 0\]; give node number"),
-        ({"rate": "51.2 m"}, "rate: '51.2 m' is no quantity in Hz"),
+        ({"rate": "51.2 m"}, "rate: '51.2 m' is not a quantity in Hz"),
     ],
 )
 def test_a_unit_of_another_kind_in_a_layout_is_refused_by_its_place(more, message):
@@ -233,7 +233,7 @@ def roving(folder: Path, *names: str) -> list[Path]:
 
 
 def test_a_pattern_takes_nodes_and_directions_from_names(tmp_path):
-    """All digits that stand together are the node: P12 is no point 2, whatever stands before it."""
+    """All digits that stand together are the node: P12 is not point 2, whatever stands before it."""
     files = roving(tmp_path, "P12_+x_1.csv", "P012_+x_2.csv", "P3_-y_1.csv")
     for match in ("P{node}_{direction}_*.csv", "*{node}_{direction}_?.csv"):
         plan = layout_from(tomllib.loads(ROVING + f'[[file]]\nmatch = "{match}"\n'))
@@ -263,7 +263,7 @@ def test_units_and_scale_of_single_files(tmp_path):
     [
         ('match = "P{node}_{node}.csv"', r"\{node\} stands once in match"),
         ('match = "P{node}.csv"\nnode = 3', r"\{node\} stands once in match, and not beside a key"),
-        ('match = "P*.csv"', "says nothing of these files"),
+        ('match = "P*.csv"', "states nothing about these files"),
         ('match = "P*.csv"\nscale = "two"', "scale = 'two' is not of the kind float"),
     ],
 )

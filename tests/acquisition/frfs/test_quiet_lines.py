@@ -147,5 +147,5 @@ def test_nodes_that_are_none_are_refused(nodes):
 def test_a_degree_of_freedom_is_read_as_it_prints(text, dof):
     assert Dof.of(text) == dof
     assert Dof.of(str(dof)) == dof
-    with pytest.raises(InputError, match="no degree of freedom"):
+    with pytest.raises(InputError, match="not a degree of freedom"):
         Dof.of(text + "!")

@@ -96,7 +96,7 @@ def test_axes_in_any_order_and_left_out(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_mat(one, layout(table)).values, H[:, :, 0].T)
     with pytest.raises(InputError, match="several references without an axis"):
         read_mat(one, layout(table | {"references": ["3+Z", "4+Z"]}))
-    with pytest.raises(InputError, match=r"shape \(51, 2\), but the layout says"):
+    with pytest.raises(InputError, match=r"shape \(51, 2\), but the layout states"):
         read_mat(one, layout(table | {"axes": ["response", "line"]}))
 
 
@@ -161,19 +161,19 @@ def test_a_mat_file_goes_through_the_front_door(tmp_path: Path) -> None:
     [
         ({"frfs": "nothing"}, "no variable 'nothing' in it; there are 'f', 'test'"),
         ({"frfs": "test.G"}, "no field 'G' in 'test'; there are 'H', 'note', 'cells'"),
-        ({"frfs": "f.G"}, "is no structure"),
+        ({"frfs": "f.G"}, "is not a structure"),
         ({"frfs": "test.note"}, "is text; name one"),
         ({"frfs": "test.cells"}, "is a cell array; name one"),
         ({"frfs": "test"}, "is a structure; name one"),
         ({"frfs": "other"}, "is text"),
-        ({"frequency": "a"}, "no row or column"),
+        ({"frequency": "a"}, "not a row or column"),
         ({"unit": "kg"}, "no unit"),
         ({"axes": ["line", "line"]}, "in order"),
-        ({"responses": ["1"]}, "no degree of freedom"),
+        ({"responses": ["1"]}, "not a degree of freedom"),
         ({"quantity": "force"}, "quantity"),
         ({"frf": "x"}, "unknown key 'frf'"),
         ({"frequency": 3}, "is no text"),
-        ({"responses": "1+Z"}, "no list of texts"),
+        ({"responses": "1+Z"}, "not a list of texts"),
     ],
 )
 def test_what_does_not_fit_is_said(tmp_path: Path, change: dict[str, Any], word: str) -> None:
@@ -187,11 +187,11 @@ def test_other_versions_are_refused_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"7\.3 \(HDF5\).*-v7"):
         read_mat(path, layout(MODES))
     savemat(path, {"fn": LINES}, format="4")
-    with pytest.raises(InputError, match="no MATLAB file of version 5"):
+    with pytest.raises(InputError, match="not a MATLAB file of version 5"):
         read_mat(path, layout(MODES))
     for content in (b"", b"MATLAB 5.0", bytes(128)):
         path.write_bytes(content)
-        with pytest.raises(InputError, match="no MATLAB file"):
+        with pytest.raises(InputError, match="not a MATLAB file"):
             read_mat(path, layout(MODES))
     with pytest.raises(InputError, match="cannot be opened"):
         read_mat(tmp_path / "none.mat", layout(MODES))

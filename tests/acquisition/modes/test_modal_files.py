@@ -152,7 +152,7 @@ def test_a_table_brings_its_points(tmp_path):
         ("frequency,damping,damping_percent\n10,0.01,1\n", "both give the damping"),
         ("frequency,dampin\n10,0.01\n", "is 'damping' meant"),
         ("frequency,damping_pct\n10,0.6\n", "is 'damping_percent' meant"),
-        ("frequency,sigma\n10,5 %\n", "no number"),
+        ("frequency,sigma\n10,5 %\n", "not a number"),
         ("frequency,sigma\n10,-1\n", "negative"),
         ("frequency\n1e300\n", "beyond"),
         ("frequency,1+Z,2+Z\n10,1e300,1\n", "scale it"),
@@ -169,16 +169,16 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is none known here, is 'sigma' meant"),
-        ("frequency,sigma,x+Z\n10.5,0.1,1\n", "column 'x\\+Z' is none known"),
+        ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is unknown, is 'sigma' meant"),
+        ("frequency,sigma,x+Z\n10.5,0.1,1\n", "column 'x\\+Z' is unknown"),
         ("frequency\n10.5,0.1\n", "more values than the header has names"),
-        ("frequency,sigma\n10.5,0.1\n11,0.1,7\n", "no table of columns separated by commas"),
-        ("frequency,sigma\ninf,0.1\n", "'inf' in column 'frequency' is no number"),
+        ("frequency,sigma\n10.5,0.1\n11,0.1,7\n", "not a table of columns separated by commas"),
+        ("frequency,sigma\ninf,0.1\n", "'inf' in column 'frequency' is not a number"),
         ("frequency,sigma\n1e999,0.1\n", "beyond all bounds"),
-        ("frequency,sigma\n1_0,0.1\n", "is no number"),
+        ("frequency,sigma\n1_0,0.1\n", "is not a number"),
         (
             "frequency,sigma\n19.06 Hz,0.1\n",
-            "'19.06 Hz' in column 'frequency' is no number but has a unit, Hz; write 19.06 alone",
+            "'19.06 Hz' in column 'frequency' is not a number but has a unit, Hz; write 19.06 alone",
         ),
     ],
 )
@@ -208,12 +208,12 @@ def test_a_comma_that_ends_every_line_makes_no_column(tmp_path: Path) -> None:
     path.write_text("frequency,sigma,\n10.5,0.1,\n20,0.1,\n")
     assert read_modes(path).frequency.tolist() == [10.5, 20.0]
     path.write_text("frequency,sigma,\n10.5,0.1,\n20,0.1,3\n")
-    with pytest.raises(InputError, match="'Unnamed: 2' is none known here"):
+    with pytest.raises(InputError, match="'Unnamed: 2' is unknown"):
         read_modes(path)
 
 
 def test_a_heading_that_stands_twice_is_called_so(tmp_path: Path) -> None:
     path = tmp_path / "modes.csv"
     path.write_text("frequency,sigma,sigma\n10.5,0.1,0.2\n")
-    with pytest.raises(InputError, match="column 'sigma' stands there twice"):
+    with pytest.raises(InputError, match="column 'sigma' is given twice"):
         read_modes(path)

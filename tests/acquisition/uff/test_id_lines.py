@@ -28,11 +28,11 @@ def test_a_misspelt_window_is_named_with_what_is_read(text: str) -> None:
 def test_misspelt_averages_are_named_with_what_is_read() -> None:
     assert averages_of(["averges 5"]) == (
         0,
-        "its ID lines say 'averges': not taken; what is read is 'averages 5'",
+        "its ID lines state 'averges': not taken; what is read is 'averages 5'",
     )
     assert averages_of(["averages 5"]) == (5, "")
     for lost in ("averages", " Averages : "):
-        assert averages_of(["beam", lost, "NONE"]) == (0, "its ID lines speak of averages without a number")
+        assert averages_of(["beam", lost, "NONE"]) == (0, "its ID lines mention averages without a number")
 
 
 @pytest.mark.parametrize(

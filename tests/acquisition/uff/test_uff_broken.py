@@ -66,7 +66,7 @@ def test_garbled_number_is_quoted(written):
 
     content = written(spoil, "ascii")
     (bad,) = [info for info in content.datasets if not info.ok]
-    assert "1.2x4" in bad.message and "no number" in bad.message
+    assert "1.2x4" in bad.message and "not a number" in bad.message
     assert content.tests[0].points[0].count == 3
 
 

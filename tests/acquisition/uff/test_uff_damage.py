@@ -357,10 +357,10 @@ def test_what_is_not_used_is_said_in_one_line(drawn, reread):
         ("- 8 1/s", 8.0, "taken for 8 1/s"),
         ("- none", 0.0, ""),
         ("none", 0.0, ""),
-        ("8,5 1/s", 0.0, "no number"),
-        ("nan", 0.0, "no number"),
-        ("1e400", 0.0, "cannot be meant"),
-        ("eight", 0.0, "no number"),
+        ("8,5 1/s", 0.0, "not a number"),
+        ("nan", 0.0, "not a number"),
+        ("1e400", 0.0, "is implausible"),
+        ("eight", 0.0, "not a number"),
     ],
 )
 def test_decay_in_an_id_line(tmp_path, reread, rng, stated, decay, word):

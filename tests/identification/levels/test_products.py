@@ -1,4 +1,4 @@
-"""Peaks that a joint makes of two modes are no modes: against structures with a joint, integrated in time."""
+"""Peaks that a joint makes of two modes are not modes: against structures with a joint, integrated in time."""
 
 from __future__ import annotations
 

@@ -207,7 +207,7 @@ def test_values_that_are_not_finite_are_refused(rng):
     a[2, 1] = np.nan
     with pytest.raises(InputError, match="row 2, column 1"):
         mac(a, a)
-    with pytest.raises(InputError, match="no set of mode shapes"):
+    with pytest.raises(InputError, match="not a set of mode shapes"):
         mpc(np.ones((2, 2, 2)))
 
 

@@ -117,7 +117,7 @@ def test_few_points_leave_the_decision_to_frequency(n_points, rng):
     noisy = shapes + 0.03 * rng.standard_normal(shapes.shape)
     found = correlate(modes(hertz, noisy), modes(hertz * 1.03, shapes))
     assert {i - j for i, j in indices(found)} <= {0}
-    assert "a high MAC says little" in found.notes[-1]
+    assert "a high MAC is weak evidence" in found.notes[-1]
 
 
 def test_one_point_or_none_in_common_pairs_by_frequency():

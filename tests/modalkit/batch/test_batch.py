@@ -36,7 +36,7 @@ def fleet(tmp_path: Path) -> Path:
 
 
 def make_fleet(folder: Path) -> Path:
-    """Two studies that work, deep in folders, two that do not, and what is no study."""
+    """Two studies that work, deep in folders, two that do not, and what is not a study."""
     shutil.copytree(SAMPLES / "beam_dry", folder / "b" / "beam")
     study = folder / "b" / "beam" / "published.toml"
     (folder / "b" / "beam" / "study.toml").unlink()
@@ -206,7 +206,7 @@ def test_an_interrupted_batch_goes_on_and_repeats_what_failed_or_changed(
         run(resume=False)
     assert fake.asked == NAMES[:2]
     fake.stop_at = ""
-    with pytest.raises(InputError, match="--resume goes on with it"):
+    with pytest.raises(InputError, match="continue it with --resume"):
         run(resume=False)
     whole = run()
     assert fake.asked == [NAMES[0], *NAMES[2:]]

@@ -83,7 +83,7 @@ def test_a_scheduler_that_is_not_there_is_an_error() -> None:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-    with pytest.raises(InputError, match="nobody answers there; start one"):
+    with pytest.raises(InputError, match="no answer there; start one"):
         run_blind(1, 5, plan=FAST, scheduler=address)
 
 
@@ -99,7 +99,7 @@ def test_somebody_else_at_the_address_is_an_error(monkeypatch: pytest.MonkeyPatc
         silent.bind(("127.0.0.1", 0))
         silent.listen()
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        with pytest.raises(InputError, match="is no Dask scheduler"):
+        with pytest.raises(InputError, match="is not a compatible Dask scheduler"):
             run_blind(1, 5, plan=FAST, scheduler=address)
 
 

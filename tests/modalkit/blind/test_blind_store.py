@@ -127,7 +127,7 @@ def test_more_trials_may_be_asked_for_later(store: Path) -> None:
 
 def test_a_store_is_not_overwritten_without_being_told(store: Path) -> None:
     before = store.read_bytes()
-    with pytest.raises(InputError, match="--resume goes on with it"):
+    with pytest.raises(InputError, match="continue it with --resume"):
         run_blind(1, SEED, plan=FAST, diagnose=always_none, store=store)
     assert store.read_bytes() == before
 
@@ -298,13 +298,13 @@ def test_a_killed_command_goes_on(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--resume"], "give the --store"),
+        (["--resume"], "needs the --store"),
         (["study.toml", "--real"], "STUDY and --real"),
         (["study.toml", "--store", "run.jsonl"], "--store does not go with STUDY"),
         (["study.toml", "--kinds", "beam", "--leave-out"], "--kinds, --leave-out do not go with STUDY"),
         (["--real", "--trials", "3"], "--trials does not go with --real"),
         (["--check", "run.jsonl", "--json", "out.json"], "--json does not go with --check"),
-        (["--store", "run.jsonl", "--resume"], "resumed without its seed"),
+        (["--store", "run.jsonl", "--resume"], "resuming needs its seed"),
         (["--store", "new.jsonl", "--seed", "-1"], "--seed -1: give 0 or a positive number"),
         (["study.toml", "--trials", "-1"], "--trials -1: at least 0"),
         (["study.toml", "--workers", "0"], "--workers 0: at least 1"),
@@ -352,6 +352,6 @@ def test_a_line_nested_deeper_than_a_stack(tmp_path: Path, content: bytes) -> No
 def test_a_file_of_another_kind_without_a_line_end_is_not_emptied(tmp_path: Path) -> None:
     path = tmp_path / "notes.txt"
     path.write_text("not ours")
-    with pytest.raises(InputError, match="no store of a run"):
+    with pytest.raises(InputError, match="not a store of a run"):
         Journal(path, resume=True)
     assert path.read_text() == "not ours"

@@ -75,7 +75,7 @@ def test_a_sensor_and_an_estimator_in_small_letters_are_taken(run: Run, tmp_path
     assert run("frf", beam(), "-o", plain)[0] == 0
     code, out, _ = run("frf", beam(), "-o", light, "--estimator", "h1", "--sensor-mass", "5+Z=0.005")
     assert code == 0
-    assert "mass of the accelerometers was taken out of the FRFs: 5 g at 5+Z" in out
+    assert "mass of the accelerometers was removed from the FRFs: 5 g at 5+Z" in out
     found = []
     for path in (plain, light):
         target = tmp_path / "modes.json"

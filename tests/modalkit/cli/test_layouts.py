@@ -82,6 +82,6 @@ def test_frfs_without_a_stated_window_say_that_one_would_be_in_the_damping(run: 
     assert (code, err) == (0, "")
     known = (tmp_path / "h.mat", "--layout", tmp_path / "l.toml")
     code, text, _ = run("identify", *known)
-    assert code == 0 and "Window: none is stated" in text and "--decay takes it out" in text
+    assert code == 0 and "Window: none is stated" in text and "--decay removes it" in text
     code, text, _ = run("identify", *known, "--decay", "2")
-    assert code == 0 and "none is stated" not in text and "2 1/s of decay was taken out" in text
+    assert code == 0 and "none is stated" not in text and "2 1/s of decay was removed" in text

@@ -111,7 +111,7 @@ def test_answers_say_the_verdict() -> None:
         mass.replace("\N{NO-BREAK SPACE}", " ")
         == "The mass of the sensor explains the gap: 12.1 g (95 %: 11.5 to 12.6)"
     )
-    assert "cannot tell which" in answer(diagnosis_of("beam", verdict="class", first="E"))
+    assert "cannot show which" in answer(diagnosis_of("beam", verdict="class", first="E"))
     assert "nothing in the library" in answer(diagnosis_of("beam", verdict="unknown"))
     assert answer(diagnosis_of("beam", verdict="none")).startswith("No gap")
 
@@ -124,5 +124,5 @@ def test_the_title_of_no_gap_counts_the_rings_outside_the_band(rings: int) -> No
     doubt = np.full(count, 0.5)
     errors = ModeErrors(np.linspace(10, 90, count), before, None, doubt / 5, doubt, "frequency")
     message = words(gap_figure(diagnosis_of("beam", verdict="none"), errors))
-    assert f"{rings or 'none'} outside what noise and tolerances make" in message
+    assert f"{rings or 'none'} outside the band of noise and tolerances" in message
     assert "within" not in message

@@ -49,7 +49,7 @@ def test_as_many_modes_as_fit_are_shown(modes: int) -> None:
 
 def test_unknown_says_that_nothing_explains_and_how_zones_were_weighed() -> None:
     message = words(localisation_figure(diagnosis_with("beam", "unknown")))
-    assert "Nothing explains the gap" in message
+    assert "No explanation was found for the gap" in message
     assert "as if one of them alone were changed" in message
 
 
@@ -103,7 +103,7 @@ def test_what_acts_everywhere_is_named_and_not_by_one_channel() -> None:
 
 def test_measurement_or_structure_is_left_open_where_the_class_leaves_it_open() -> None:
     title = localisation_title(spread("class", ("calibration_gain",), ("density",)))
-    assert title == "Whether the gap sits in the measurement or in the structure, these data cannot tell"
+    assert title == "These data cannot show whether the gap lies in the measurement or in the structure"
 
 
 def test_a_pair_of_causes_is_not_placed_whole_where_one_of_them_sits() -> None:

@@ -54,6 +54,6 @@ def _of_object(value: dict[str, Any], kind: Any, at: str) -> Iterator[str]:
 def _is_plain(value: Any, kind: Any) -> bool:
     if get_origin(kind) is Literal:
         return value in get_args(kind)
-    if kind in (int, float):  # true and false are no numbers in JSON
+    if kind in (int, float):  # true and false are not numbers in JSON
         return isinstance(value, (int, kind)) and not isinstance(value, bool)
     return kind is Any or (isinstance(kind, type) and isinstance(value, kind))

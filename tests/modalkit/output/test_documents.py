@@ -76,7 +76,7 @@ def written(record: Mapping[str, object]) -> dict[str, Any]:
     """The record as it comes back from strict JSON."""
 
     def refuse(name: str) -> None:
-        raise AssertionError(f"{name} is no JSON")
+        raise AssertionError(f"{name} is not JSON")
 
     found: dict[str, Any] = json.loads(json.dumps(plain(record), allow_nan=False), parse_constant=refuse)
     return found

@@ -1,4 +1,4 @@
-"""What numbers the form of an effect is no number that was found."""
+"""The number that selects the form of an effect is not a result."""
 
 from __future__ import annotations
 

@@ -159,20 +159,20 @@ def test_one_file_is_not_asked_for_twice(refused: Refused) -> None:
 
 def test_a_batch_does_not_touch_the_tables_and_results_of_others(refused: Refused, folder: Path) -> None:
     (folder / "t_causes.csv").write_text("why,who\n", encoding="utf-8")
-    assert "t_causes.csv: stands there" in refused("batch", ".", "-o", "t.csv")
+    assert "t_causes.csv: exists" in refused("batch", ".", "-o", "t.csv")
     (folder / "t_causes.csv").unlink()
     (folder / "t.csv.jsonl").write_text('{"finished":true}\n', encoding="utf-8")
-    assert "t.csv.jsonl: stands there" in refused("batch", ".", "-o", "t.csv")
+    assert "t.csv.jsonl: exists" in refused("batch", ".", "-o", "t.csv")
     (folder / "t.csv.jsonl").unlink()
     (folder / "study.json").write_text('{"mine": 1}', encoding="utf-8")
-    assert "study.json: stands there" in refused("batch", ".", "-o", "t.csv", "--json-dir", ".")
+    assert "study.json: exists" in refused("batch", ".", "-o", "t.csv", "--json-dir", ".")
 
 
 def test_figures_replace_figures_only(tmp_path: Path) -> None:
     save_figures({"one": Figure()}, tmp_path)
     save_figures({"one": Figure()}, tmp_path)
     (tmp_path / "two.png").write_bytes(b"\x89PNG\r\n\x1a\n" + b"photograph" * 99)
-    with pytest.raises(InputError, match=r"two\.png: stands there and is not a figure drawn by modalkit"):
+    with pytest.raises(InputError, match=r"two\.png: exists and is not a figure drawn by modalkit"):
         save_figures({"one": Figure(), "two": Figure()}, tmp_path)
     assert b"photograph" in (tmp_path / "two.png").read_bytes()
 
@@ -181,7 +181,7 @@ def test_figures_replace_figures_only(tmp_path: Path) -> None:
 def test_a_journal_cuts_nothing_off_the_file_of_another(tmp_path: Path, content: str) -> None:
     path = tmp_path / "log.jsonl"
     path.write_text(content, encoding="utf-8")
-    with pytest.raises(InputError, match="no store of a run"):
+    with pytest.raises(InputError, match="not a store of a run"):
         Journal(path, resume=True)
     assert path.read_text(encoding="utf-8") == content
 
@@ -200,7 +200,7 @@ def test_what_a_command_wrote_before_is_replaced(tmp_path: Path) -> None:
     write_json(one, {"schema": "modalkit.modes/1"})
     write_json(one, {"schema": "modalkit.modes/2", "modes": []})
     assert json.loads(one.read_text()) == {"schema": "modalkit.modes/2", "modes": []}
-    with pytest.raises(InputError, match=r"a\.json: stands there and is not a JSON file of modalkit\.update"):
+    with pytest.raises(InputError, match=r"a\.json: exists and is not a JSON file of modalkit\.update"):
         write_json(one, {"schema": "modalkit.update/1"})
     (tmp_path / "empty").touch()
     check_output(tmp_path / "empty", json_of("modalkit.update/1"))

@@ -319,7 +319,7 @@ def test_effects_that_are_equal_by_physics_are_called_so() -> None:
 
 
 def test_a_size_at_the_end_of_its_range_is_called_unlikely() -> None:
-    """Both are said: where the size is, and that it is hardly believable."""
+    """Both are said: where the size is, and that it is implausible."""
     at_bound = replace(SENSOR, parameters={"sensor_mass.mass": replace(MASS, at_bound=True)})
     rows = (SENSOR, at_bound, replace(at_bound, plausible=False))
     plain, bound, both = (lines(NAMED, ranking=(row, E))["Cause"] for row in rows)

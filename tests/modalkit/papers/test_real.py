@@ -316,5 +316,5 @@ def test_the_command_judges_every_published_case(tmp_path: Path, capsys: pytest.
     skipped = [c["name"] for c in record["cases"] if c["missing"]]
     assert skipped == [one.name for one in CASES if one.in_data]
     printed = capsys.readouterr().out
-    assert "How it is judged" in printed
+    assert "How answers are graded" in printed
     assert "plate in water" in printed

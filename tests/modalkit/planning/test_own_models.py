@@ -261,7 +261,7 @@ def test_where_frequencies_alone_are_known_shapes_are_proposed(tmp_path: Path) -
 
 
 def test_a_mode_without_a_partner_in_the_model_does_not_stand_in_the_way(tmp_path: Path) -> None:
-    """A table of modes of which one is none of the model's is forecast by the others."""
+    """A table of modes of which one is not one of the model's is forecast by the others."""
     rows = ["frequency,sigma,2+X,4+X,6+X"]
     own = np.sin(np.outer((2, 4, 6), (2 * np.arange(1, 4) - 1) * np.pi / 13))
     for f, shape in zip(closed_form({}), own.T, strict=False):
@@ -312,9 +312,11 @@ def test_a_change_that_makes_the_test_worse_is_not_offered(chained: Forecast) ->
     trade = replace(best, worth=0.1, factor=0.8, separates=(("E", "density"),))
     found = replace(chained, advice=(best, trade, worse))
     assert offered(found) == [best, trade]
-    assert brings(trade) == "E from density; severities told become 1.25 times larger"
+    assert brings(trade) == "E from density; the severities it separates become 1.25 times larger"
     assert not brings(replace(best, separates=(), factor=1.0))
-    assert note(replace(found, advice=(trade,)))[-1].endswith("severities told become 1.2 times larger.")
+    assert note(replace(found, advice=(trade,)))[-1].endswith(
+        "the severities it separates become 1.2 times larger."
+    )
 
 
 PLATE = """
@@ -351,17 +353,17 @@ def test_a_plate_is_forecast_by_its_own_model(tmp_path: Path) -> None:
 
 
 REFUSED = [
-    ({"test": ""}, "nothing says where the structure will be hit; give .test. points"),
+    ({"test": ""}, "the points to be hit are not stated; give .test. points"),
     ({"test": "points = [0.1, 0.2]"}, "0.1 is a place along a beam; write a node and its direction"),
-    ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is none of the model's, which reach from 1 to 6"),
+    ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is not one of the model's, which reach from 1 to 6"),
     ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
     ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
     (
         {"test": f'{POINTS}\nshape_sigma = "4 %"'},
         "shape_sigma is of modes; a planned test takes none.*: leave it out",
     ),
-    ({"test": 'points = ["here"]'}, "'here' is no point; write a place along a beam"),
-    ({"test": "points = [[0.1]]"}, "is no point; write a place along a beam"),
+    ({"test": 'points = ["here"]'}, "'here' is not a point; write a place along a beam"),
+    ({"test": "points = [[0.1]]"}, "is not a point; write a place along a beam"),
 ]
 
 
@@ -396,7 +398,7 @@ def test_a_place_on_a_plate_is_no_place_along_a_beam(tmp_path: Path) -> None:
     path = tmp_path / "beam.toml"
     text = PLATE.replace('type = "plate"', 'type = "beam"').replace("elements = [8, 4]", "")
     path.write_text(text.format(test="points = [[0.2, 0.05]]"))
-    with pytest.raises(StudyError, match="is no place along a beam"):
+    with pytest.raises(StudyError, match="is not a place along a beam"):
         bench_of(read_study(path))
     path.write_text(PLATE.format(test="points = [[0.2, 0.05]]\nsensor = 0.3"))
     with pytest.raises(StudyError, match=r"\[test\] points and sensor: 0.3 is a place along a beam"):
@@ -421,7 +423,7 @@ def test_the_command_prints_writes_and_draws(tmp_path: Path) -> None:
     ]
     done = CliRunner().invoke(app, wanted)
     assert done.exit_code == 0, done.output
-    assert "Names:" in done.output
+    assert "Named:" in done.output
     assert "local_stiffness of middle" in done.output
     assert json.loads(document.read_text())["schema"] == "modalkit.plan/1"
     assert "local_stiffness of middle" in report.read_text()

@@ -54,7 +54,7 @@ def outside(chart: Chart, name: str) -> int:
 @pytest.mark.parametrize("after", [None, AFTER])
 def test_the_title_of_the_gap_counts_the_marks_outside_the_bands(after: np.ndarray | None) -> None:
     chart = gap_chart(errors(after, DOUBT))
-    counted = [outside(chart, "model as it stands")] + ([] if after is None else [outside(chart, "after")])
+    counted = [outside(chart, "unchanged model")] + ([] if after is None else [outside(chart, "after")])
     assert counted == [2, 1][: len(counted)]
     assert [
         int(n) for n in re.findall(r"(?<!Frequency of )\b(\d+)(?= outside| after)", chart.title)

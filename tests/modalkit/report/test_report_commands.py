@@ -69,8 +69,8 @@ def test_a_plan_reports_its_lines(call: Call, tmp_path: Path) -> None:
     code, out, error = call("blind", BEAM / "study.toml", "--report", page)
     assert code == 0, error
     text = Reader(page.read_text(encoding="utf-8")).text
-    tells = next(line for line in out.splitlines() if line.startswith("Tells:"))
-    assert " ".join(tells.removeprefix("Tells:").split()) in text
+    tells = next(line for line in out.splitlines() if line.startswith("Pairs:"))
+    assert " ".join(tells.removeprefix("Pairs:").split()) in text
     charts = {chart["name"] for chart in data_of(page.read_text(encoding="utf-8"))["charts"]}
     assert charts == {"separations", "thresholds"}
 

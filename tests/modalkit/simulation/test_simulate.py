@@ -263,7 +263,7 @@ def test_what_does_not_apply_is_refused(tmp_path: Path) -> None:
     free = read_study(study_of(tmp_path, "", clamped="[]"))
     with pytest.raises(StudyError, match="no clamped edge"):
         simulate_test(free, [parse_effect("clamp_rotation:stiffness=100")])
-    with pytest.raises(InputError, match="says which points"):
+    with pytest.raises(InputError, match="states which points"):
         simulate_test(read_study(STUDY), options=Options(points=3))
     with pytest.raises(StudyError, match="at least 2"):
         simulate_test(free, options=Options(points=1))

@@ -129,11 +129,11 @@ def test_a_region_s_modulus_is_supposed_in_the_unit_of_an_update(
     monkeypatch.setenv("PATH", "")  # what is refused is refused before CalculiX runs
     for ends, parameter, message in (
         ((0.5, 1.0), "ROOT.E", r"\[0.5, 1\] Pa is far from the model's value, ROOT.E = 7e\+10 Pa"),
-        (('"1 mm"', '"2 mm"'), "ROOT.E", "no quantity in Pa"),
+        (('"1 mm"', '"2 mm"'), "ROOT.E", "not a quantity in Pa"),
         (
             ('"35 GPa"', '"70 GPa"'),
             "E",
-            "E is a factor where no card of the deck says it of all its elements",
+            "E is a factor where no card of the deck states it of all its elements",
         ),
     ):
         with pytest.raises(StudyError, match=message):

@@ -148,13 +148,13 @@ REFUSED = [
         r"1 files for 0 \[\[model.region",
     ),
     (STUDY + '[[model.region]]\nname = "a"\n', "'a' needs x, or a part"),
-    (STUDY + '[[model.region]]\nname = "a"\nx = [0, 1]\nthickness = 0.01\n', "know no thickness"),
+    (STUDY + '[[model.region]]\nname = "a"\nx = [0, 1]\nthickness = 0.01\n', "have no thickness"),
     (STUDY.replace("nodes =", "knots ="), "unknown key model.knots"),
     (STUDY.replace("[model.material]", 'units = "mm"\n[model.material]'), "model.units: .*mm-t-s"),
     (STUDY.replace("7850.0", "7.85e-9"), "density = 7.85e-09: no solid weighs so little; it is in kg/m3"),
     (STUDY.replace("210e9", "inf"), "model.material.E: .*finite"),
     (STUDY + '[[model.region]]\nname = ""\nx = [0, 1]\n', "model.region.0.name: "),
-    (STUDY + '[update]\nparameters = ["E", "E"]\n', "update.parameters: .*'E' stands twice"),
+    (STUDY + '[update]\nparameters = ["E", "E"]\n', "update.parameters: .*'E' is given twice"),
     (
         STUDY + '[update]\nmethod = "frf"\nstages = [["E"], []]\n',
         "update.stages: .*a stage without parameters",
@@ -185,7 +185,7 @@ def test_parts_must_be_the_regions_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["thickness", "length", "clamp_rotation.*support", "width"])
 def test_what_matrices_do_not_know_cannot_be_updated(tmp_path: Path, name: str) -> None:
     case = open_study(read_study(exported(tmp_path))).case
-    with pytest.raises(StudyError, match=rf"update: {name}.*(imported matrices|not known)"):
+    with pytest.raises(StudyError, match=rf"update: {name}.*(imported matrices|unknown)"):
         update(case, parameters=(name.partition(".")[0],))
 
 

@@ -142,7 +142,7 @@ def test_modes_of_a_matlab_file_are_data_of_a_study(tmp_path: Path) -> None:
     test = open_study(read_study(written(tmp_path, "", 'layout = "layout.toml"', study))).case.measured
     np.testing.assert_allclose(test.constants, shapes)
     np.testing.assert_allclose(test.points[:, 0], POINTS)
-    with pytest.raises(StudyError, match="has to say which of its variables is what"):
+    with pytest.raises(StudyError, match="must state the meaning"):
         read_study(written(tmp_path, "", "", study))
-    with pytest.raises(StudyError, match="layout: said of records"):
+    with pytest.raises(StudyError, match="layout: given for records"):
         read_study(written(tmp_path, FIVE, 'layout = "layout.toml"'))

@@ -85,7 +85,7 @@ def refused(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
         message = capfd.readouterr().err.strip()
         assert ended.value.code == 2, message
         assert list(tmp_path.iterdir()) == []
-        assert "this should not have happened" not in message
+        assert "internal error" not in message
         assert "Warning:" not in message
         return message
 

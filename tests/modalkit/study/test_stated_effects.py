@@ -49,7 +49,7 @@ def test_the_command_line_takes_units() -> None:
     assert parse_effect("lumped_mass:mass=20g,x=100mm")[1] == {"mass": 0.02, "x": 0.1}
     assert parse_effect("E:factor=88%")[1] == {"factor": 0.88}
     assert parse_effect("clamp_rotation:stiffness=4 kN m/rad per m", "plate")[1] == {"stiffness": 4000.0}
-    with pytest.raises(InputError, match="mass: '20 mm' is no quantity in kg"):
+    with pytest.raises(InputError, match="mass: '20 mm' is not a quantity in kg"):
         parse_effect("lumped_mass:mass=20 mm,x=0.1")
 
 
@@ -78,7 +78,7 @@ def test_several_of_one_name_stand_where_there_may_be_several(tmp_path: Path) ->
     assert read_study(path).accepted() == tuple(("lumped_mass", {"mass": 0.005, "x": x}) for x in (0.1, 0.2))
     modulus = '\n[[model.effect]]\nname = "E"\nfactor = 0.9\n'
     path.write_text(text + modulus + modulus)
-    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] E stands twice"):
+    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] E is given twice"):
         read_study(path).accepted()
 
 

@@ -160,7 +160,7 @@ def test_a_window_that_the_file_states_is_not_taken_out_twice(tmp_path: Path) ->
     write_uff(tmp_path / "w.uff", tests=hits(plan=replace(PLAN, decay=1.5)))
     assert read(tmp_path / "w.uff").frfs.decay == pytest.approx(1.5)
     assert read(tmp_path / "w.uff", decay=1.5).frfs.decay == pytest.approx(1.5)
-    with pytest.raises(InputError, match=r"states an exponential window of 1\.5 1/s, but 4 1/s is said"):
+    with pytest.raises(InputError, match=r"states an exponential window of 1\.5 1/s, but 4 1/s is given"):
         read(tmp_path / "w.uff", decay=4.0)
     write_uff(tmp_path / "f.uff", frfs=replace(frfs(), decay=1.5))
     if read(tmp_path / "f.uff").frfs.decay:

@@ -133,14 +133,14 @@ def test_the_commands_take_modes(tmp_path: Path, run: Run) -> None:
         code, _, err = run(*wrong)
         assert code == 2 and "holds modes" in err and len(err.strip().splitlines()) == 1
     code, _, err = run("correlate", first)
-    assert code == 2 and "is no study" in err
+    assert code == 2 and "is not a study" in err
 
 
 def test_lines_of_frfs_are_no_modes(tmp_path: Path) -> None:
     table = tmp_path / "frf.csv"
     rows = [f"{0.5 * k},{np.cos(k)},{np.sin(k)}" for k in range(1, 40)]
     table.write_text("\n".join(["frequency,1+Z,1+Z imag", *rows]))
-    with pytest.raises(InputError, match=r"lines, no modes.*layout"):
+    with pytest.raises(InputError, match=r"lines, not modes.*layout"):
         mk.read(table)
 
 
@@ -156,8 +156,8 @@ def test_text_that_is_no_table_of_modes_still_asks_for_its_layout(tmp_path: Path
     [
         ({"schema": "modalkit.modes/2"}, "schema"),
         ({"modes": []}, "no mode"),
-        ({"modes": 3}, "no list"),
-        ({"modes": [1]}, "no record"),
+        ({"modes": 3}, "not a list"),
+        ({"modes": [1]}, "not a record"),
         ({"modes": [{"frequency_hz": None}]}, "frequency_hz"),
         ({"modes": [{"frequency_hz": True}]}, "frequency_hz"),
         ({"modes": [{"frequency_hz": 10**400}]}, "frequency_hz"),

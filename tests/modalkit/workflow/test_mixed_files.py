@@ -42,9 +42,7 @@ def test_hits_and_frfs_at_other_points_are_both_used(tmp_path: Path, kind: str) 
         frfs = frfs.band(0.0, 400.0)
     found = read(written(tmp_path, frfs))
     assert [d.node for d in found.frfs.references] == [1, 2, 3, 4]
-    assert any(
-        "FRFs that no raw hits are there for are used as read (1+Z/3+Z, 1+Z/4+Z)" in w for w in found.warnings
-    )
+    assert any("FRFs without raw hits are used as read (1+Z/3+Z, 1+Z/4+Z)" in w for w in found.warnings)
     model = found.identify(band=(40, 300))
     np.testing.assert_allclose(model.modal.frequency, [80, 200], rtol=1e-4)
     assert model.modal.shapes.shape[0] == 4

@@ -32,7 +32,7 @@ def test_an_uneven_abscissa_is_the_reason_that_inspect_gives(tmp_path: Path) -> 
     assert content.reasons and "uneven.uff, data set 58" in content.reasons[0]
     with pytest.raises(InputError) as raised:
         read(path)
-    assert str(raised.value).startswith(content.reasons[0]) and "neither raw hits nor FRFs" in str(
+    assert str(raised.value).startswith(content.reasons[0]) and "no raw hits and no FRFs are usable" in str(
         raised.value
     )
 
@@ -59,9 +59,9 @@ def test_where_nothing_is_found_the_band_asked_for_is_named_with_why_a_part_was_
         ),
         _naming_band(frfs, (5.0, 500.0), "the force is weak"),
     ):
-        raise EstimationError("no pole stays where it is between 5 and 310 Hz")
+        raise EstimationError("no pole is stable between 5 and 310 Hz")
     with (
         pytest.raises(EstimationError, match=r"between 5 and 310 Hz"),
         _naming_band(frfs, (5.0, 310.0), None),
     ):
-        raise EstimationError("no pole stays where it is between 5 and 310 Hz")
+        raise EstimationError("no pole is stable between 5 and 310 Hz")

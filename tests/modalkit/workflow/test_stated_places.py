@@ -90,7 +90,7 @@ def test_directions_that_mean_nothing_are_refused(tmp_path: Path) -> None:
     for stated, why in (
         ('"9+X" = [1, 0, 0]', "9+X, a point"),
         ('"1+X" = [0, 0, 0]', "give a translation and a vector"),
-        ('"1X" = [1, 0, 0]', "no degree of freedom"),
+        ('"1X" = [1, 0, 0]', "not a degree of freedom"),
     ):
         with pytest.raises(StudyError, match=why.replace("+", r"\+")):
             opened(tmp_path, columns, f"directions = {{ {stated} }}")

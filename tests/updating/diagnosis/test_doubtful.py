@@ -28,12 +28,12 @@ def posed(ratio: np.ndarray) -> Posed:
 @pytest.mark.parametrize("explained", ["", "ground_spring"])
 def test_a_lone_mode_is_stated_with_what_rests_on_it(explained: str) -> None:
     (note,) = notes_on_doubtful(posed(np.array([1.2, 1.0, 1.001, 1.0, 0.999, 1.0])), explained)  # type: ignore[arg-type]
-    assert "24.00 Hz stands alone" in note
-    assert ("Nothing should be concluded" in note) is not bool(explained)
-    assert (f"{explained} explains it, and rests on it" in note) is bool(explained)
+    assert "24.00 Hz deviates from the others" in note
+    assert ("Settle this before drawing conclusions" in note) is not bool(explained)
+    assert (f"{explained} explains it and depends on it" in note) is bool(explained)
 
 
 def test_a_structure_that_a_cause_explains_is_not_called_another() -> None:
     wet = posed(np.full(len(MODEL), 0.5))
-    assert "hardly the same structure" in notes_on_doubtful(wet)[0]  # type: ignore[arg-type]
+    assert "probably different structures" in notes_on_doubtful(wet)[0]  # type: ignore[arg-type]
     assert notes_on_doubtful(wet, "fluid_added_mass") == []  # type: ignore[arg-type]

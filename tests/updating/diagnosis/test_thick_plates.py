@@ -50,10 +50,10 @@ def test_nothing_is_named_where_shear_is_all_that_is_missing(theory: str) -> Non
     assert (found.verdict, found.significant) == ("none", False)
     said = " ".join(found.warnings)
     thin = theory == "kirchhoff"
-    assert ("every set of causes was weighed with and without" in said) == thin
-    assert ('theory = "mindlin" has them' in said) == thin
+    assert ("every set of causes was compared with and without" in said) == thin
+    assert ('theory = "mindlin" includes them' in said) == thin
     why = str(found.not_examined["shear"])
-    assert ("put under every set" in why) == thin
+    assert ("added to every set" in why) == thin
     assert ("has it already" in why) != thin
 
 

@@ -52,7 +52,7 @@ def test_the_two_beams_have_the_same_frequencies() -> None:
 
 @pytest.mark.long
 def test_frequencies_alone_name_neither_of_them() -> None:
-    """Both are listed as what the data cannot tell apart, though one has the wider prior, and less probability."""
+    """Both are listed as what the data cannot separate, though one has the wider prior, and less probability."""
     case = case_of(frequencies_alone(), replace(BEAM, theory="euler-bernoulli"))
     library = [LIBRARY["clamp_rotation"], LIBRARY["lumped_mass"]]
     found = diagnose(case, library=library, rng=np.random.default_rng(0))

@@ -146,7 +146,7 @@ def test_stated_cords_are_part_of_the_model_and_unknown_ones_are_refused() -> No
     look, values = predictor(), {"at": "cord", "along": "z", "stiffness": 2500.0}
     state = accepted_state(look, "suspension", values)
     assert look.predict(state, count=4).frequency == pytest.approx(held(2500.0, (2,))[0][6:10], rel=1e-6)
-    with pytest.raises(StudyError, match="at = 'rope' is none of the model's: cord, ends, corners"):
+    with pytest.raises(StudyError, match="at = 'rope' is not one of the model's: cord, ends, corners"):
         accepted_state(look, "suspension", values | {"at": "rope"})
 
 

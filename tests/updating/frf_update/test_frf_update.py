@@ -225,7 +225,7 @@ def test_lines_may_be_given() -> None:
     given = [20.0, 40.0, 60.0, 90.0, 150.0, 180.0, 250.0, 400.0]
     one = update_frfs(Case("tape", beam(START), measured), frfs, parameters=STRUCTURE, lines=given)
     assert one.lines[0] == pytest.approx(given)
-    with pytest.raises(StudyError, match=r"lines: \[900\.0\] Hz is none of the band"):
+    with pytest.raises(StudyError, match=r"lines: \[900\.0\] Hz is outside the band"):
         update_frfs(Case("tape", beam(START), measured), frfs, parameters=["E"], lines=[900.0])
     with pytest.raises(StudyError, match="at least one line"):
         update_frfs(Case("tape", beam(START), measured), frfs, parameters=["E"], lines=0)
@@ -281,5 +281,5 @@ def test_redrawn_data_scatter_as_the_standard_deviations_say() -> None:
         assert 0.55 < np.std(nominal * drawn) / p.sigma < 1.6
         assert p.interval is not None
         assert p.interval[0] < p.value < p.interval[1]
-    with pytest.raises(StudyError, match="5 draws tell nothing"):
+    with pytest.raises(StudyError, match="5 draws are too few"):
         bootstrap_frf_update(case, frfs, rng=rng, n=5, parameters=["E"])

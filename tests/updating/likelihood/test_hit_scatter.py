@@ -1,4 +1,4 @@
-"""The scatter of hits is told apart: where they were, how loud they were, and noise of each constant."""
+"""The scatter of hits is separated: where they were, how loud they were, and noise of each constant."""
 
 from __future__ import annotations
 

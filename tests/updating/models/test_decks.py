@@ -429,7 +429,7 @@ REFUSED: dict[str, tuple[Callable[[list[str]], list[str]], list[tuple[str, str]]
     "flat": (lambda deck: ["*PART, NAME=A", *deck], [], r"\*PART is not followed"),
     "no such node": (
         lambda deck: [*deck, "*ELEMENT, TYPE=C3D4, ELSET=X", "999, 1, 2, 3, 77777"], [],
-        r"part\.inp: element 999 has node 77777, which stands in no \*NODE card",
+        r"part\.inp: element 999 has node 77777, which is in no \*NODE card",
     ),
     "broken element": (
         lambda deck: [*deck, "*ELEMENT, TYPE=C3D8, ELSET=X", "999, 1, 2"], [], "3 words are not elements of 8 nodes"

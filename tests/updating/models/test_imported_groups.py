@@ -206,10 +206,12 @@ def test_effects_at_regions_and_node_sets_are_the_structure_built_so(
 
 def test_names_that_the_model_does_not_have(predictor: Predictor) -> None:
     for name, values, message in (
-        ("local_stiffness", {"region": "web", "loss": 0.1}, "region = 'web' is none of the model's: beam_1, beam_2"),
-        ("joint", {"joint": "bolt"}, "joint = 'bolt' is none of the model's: joint_1"),
+        ("local_stiffness", {"region": "web", "loss": 0.1}, "region = 'web' is not one of the model's: "
+                                                            "beam_1, beam_2"),
+        ("joint", {"joint": "bolt"}, "joint = 'bolt' is not one of the model's: joint_1"),
         ("ground_spring", {"at": "roof", "along": "x", "stiffness": 1.0}, "at = 'roof' is none"),
-        ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is no direction"),
+        ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is not a "
+                                                                                    "direction"),
     ):  # fmt: skip
         with pytest.raises(StudyError, match=message):
             LIBRARY[name].state(predictor, values)

@@ -89,8 +89,8 @@ REFUSED = {
     ),
     "complex": (lambda t: t.replace("       6       2", "       6       4"), "form 6 and type 4; .* real"),
     "rectangular": (lambda t: t.replace("       6       2", "       2       2"), "form 2 and type 2"),
-    "a word": (lambda t: t.replace("D+0", "X+0"), "is no number; punch"),
-    "a shifted field": (lambda t: t.replace("*       ", "*   ", 3), "node and direction are|is no number"),
+    "a word": (lambda t: t.replace("D+0", "X+0"), "is not a number; punch"),
+    "a shifted field": (lambda t: t.replace("*       ", "*   ", 3), "node and direction are|is not a number"),
 }
 
 
@@ -116,7 +116,7 @@ def test_nodes_of_another_model_are_refused(tmp_path: Path) -> None:
 
 
 LOST = {
-    "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "stands twice"),
+    "an entry twice": (lambda lines: [*lines[:4], lines[4], *lines[4:]], "is given twice"),
     "the first column": (lambda lines: [*lines[:3], *lines[4:]], "without a column before it"),
     "the first column run into its header": (
         lambda lines: [*lines[:3], "DMIG                 10               3 1.0D+06", *lines[5:]],

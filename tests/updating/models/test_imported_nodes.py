@@ -39,15 +39,15 @@ WRONG_TABLES = [
     ("node,x,y,z,direction,row\n1,0,0,0,3,-1\n", "leave it empty"),
     ("node,x,y,z,direction,row\n", "no line has a row"),
     ("node,x,y,z,direction,row\n1,0,0,0,3,\n", "no line has a row"),
-    ("node,x,y,z,direction,row\n1,0,0,0,3,1.5\n", r"row 1\.5 is no whole number"),
-    ("node,x,y,z,direction,row\n1,0,0,0,3.5,1\n", r"direction 3\.5 is no whole number"),
-    ("node,x,y,z,direction,row\n1.5,0,0,0,3,1\n", r"node 1\.5 is no whole number"),
+    ("node,x,y,z,direction,row\n1,0,0,0,3,1.5\n", r"row 1\.5 is not a whole number"),
+    ("node,x,y,z,direction,row\n1,0,0,0,3.5,1\n", r"direction 3\.5 is not a whole number"),
+    ("node,x,y,z,direction,row\n1.5,0,0,0,3,1\n", r"node 1\.5 is not a whole number"),
     ("node,x,y,z,direction,row\n1,0,0,0,1,1\n1,0.2,0,0,3,2\n", "node 1 stands at two places"),
     ("node,x,y,z,direction,row\n1,0,0,0,3,1,7\n2,0,0,0,3,2,7\n", "more values than the header has names"),
     ("node;x;y;z;direction;row\n1;0;0;0;3;1\n", "separated by commas"),
-    ("node,x,y,z,direction,row,setz\n1,0,0,0,3,1,tip\n", "column 'setz' is none of node, x"),
-    ("node,x,y,z,direction,row,X\n1,0,0,0,3,1,0\n", "column 'x' .* stands twice"),
-    (f"node,x,y,z,direction,row\n{2**53 + 2},0,0,0,3,1\n", "is no whole number"),
+    ("node,x,y,z,direction,row,setz\n1,0,0,0,3,1,tip\n", "column 'setz' is not one of node, x"),
+    ("node,x,y,z,direction,row,X\n1,0,0,0,3,1,0\n", "column 'x' .* is given twice"),
+    (f"node,x,y,z,direction,row\n{2**53 + 2},0,0,0,3,1\n", "is not a whole number"),
     ("", "not a CSV table"),
 ]
 
@@ -60,9 +60,9 @@ def test_a_wrong_node_table_is_refused(tmp_path: Path, text: str, message: str) 
 
 
 PLACES = [
-    ("node,x,y,z,sts\n1,0,0,0,tip\n", "column 'sts' is none of"),
-    (f"node,x,y,z\n{2**53 + 2},0,0,0\n", "no number"),
-    ("node,x,y,z\n1.5,0,0,0\n", "no number"),
+    ("node,x,y,z,sts\n1,0,0,0,tip\n", "column 'sts' is not one of"),
+    (f"node,x,y,z\n{2**53 + 2},0,0,0\n", "not a number"),
+    ("node,x,y,z\n1.5,0,0,0\n", "not a number"),
 ]
 
 
@@ -120,9 +120,9 @@ WRONG_DECKS = [
     (DECK + "*TRANSFORM, NSET=A\n1, 0, 0, 0, 1, 0\n", "no \\*NSET A"),
     (DECK.replace("*NODE, NSET=LOWER", "*NODE, SYSTEM=C"), "is not followed"),
     (DECK + "nobody, 1\n", "no \\*NSET nobody"),
-    (DECK.replace("1, 0.0, 0.0, 0.0", "1, here"), "is no node"),
+    (DECK.replace("1, 0.0, 0.0, 0.0", "1, here"), "is not a node line"),
     (DECK.replace("*INCLUDE, INPUT=more.inp", "*INCLUDE, INPUT=less.inp"), "cannot be read"),
-    (DECK.replace(" 2, 1.0D-1, 0.0\n", ""), "node 2 stands in no"),
+    (DECK.replace(" 2, 1.0D-1, 0.0\n", ""), "node 2 is in no"),
 ]
 
 
@@ -161,14 +161,14 @@ SLIPS = [
     (NODES + "*BOUNDARY\n1,-2000000000,3\n", "first and last direction, 1 to 6"),
     (NODES + "*BOUNDARY\n1, 3, 1\n", "none is in it"),
     (NODES + "*BOUNDARY\n1, \u00b2, 3\n", "first and last direction, 1 to 6"),
-    (NODES + "*BOUNDARY\n7, 1, 3\n", "node 7 stands in no"),
+    (NODES + "*BOUNDARY\n7, 1, 3\n", "node 7 is in no"),
     (NODES + "*NSET, NSET=A, GENERATE\n1, 3, 0\n", "no node is in it"),
     (NODES + "*NSET, NSET=A, GEMERATE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*BOUNDRY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*BOU", "is \\*BOUNDARY meant"),
-    (NODES + "*DARY\n1, 1, 3\n", "\\*DARY is nothing known; is \\*BOUNDARY meant"),
-    (NODES + "*BOUNDARY,ROOT, 1, 3\n", "is no card"),
-    (NODES + "*NSE 2\n", "is no card"),
+    (NODES + "*DARY\n1, 1, 3\n", "\\*DARY is unknown; is \\*BOUNDARY meant"),
+    (NODES + "*BOUNDARY,ROOT, 1, 3\n", "is not a card"),
+    (NODES + "*NSE 2\n", "is not a card"),
     (NODES + "*BOUNDARY\n*STEP\n*FREQUENCY\n3\n", "BOUNDARY without a line before this"),
     (NODES + "*NSET, NSET=A\n3\n*END STEP\n", "END STEP without a \\*STEP before it"),
     (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "behind the end of a step"),
@@ -176,12 +176,12 @@ SLIPS = [
     (NODES + "*NSET, NSET=A, GETE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*NSET, NSET=A, GENOUNDARY\nA, 1, 3\n", "\\*NSET with GENOUNDARY is not followed"),
     (NODES + "*BOUNDARY" + " " * 90 + "x\n1, 1, 3\n", "is \\*BOUNDARY meant"),
-    (NODES + "*\n", "is no card"),
+    (NODES + "*\n", "is not a card"),
     (NODES + "*NSET, NSET=A\n*STEP\n", "\\*NSET without a line"),
     (NODES + "*BOUNDARY\n1, 1, 3, 0.1\n", "elsewhere than at rest"),
     (NODES + "2, 1.5, 0, 0\n", "node 2 stands at another place before"),
-    (NODES + "4, 1. 5, 0, 0\n", "is no node"),
-    (NODES + "4, nan, 0, 0\n", "is no node"),
+    (NODES + "4, 1. 5, 0, 0\n", "is not a node line"),
+    (NODES + "4, nan, 0, 0\n", "is not a node line"),
     (NODES + "*INCLUDE, INPUT=job.inp\n" * 8, "line 5: .*job.inp includes itself"),
 ]
 

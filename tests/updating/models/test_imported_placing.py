@@ -167,7 +167,7 @@ ASTRAY = [
         (0.0, 0.0, 0.3),
         "test point 8 lies at .* off the imported structure: the nearest node .* away.*check axes",
     ),
-    (1000.0, (0.0, 0.0, 0.0), "the test looks a thousand times too large: is it in mm"),
+    (1000.0, (0.0, 0.0, 0.0), "the test seems a thousand times too large: is it in mm"),
 ]
 
 
@@ -186,7 +186,7 @@ def test_a_node_table_in_millimetres_is_suspected() -> None:
     wrong = NodeTable(table.node, 1000 * table.places, table.direction, table.row)
     at = np.array([[0.1, 0.0, 0.0], [0.5, 0.0, 0.0]])
     with pytest.raises(
-        StudyError, match=r'the node table looks a thousand times too large.*units = "mm-t-s" in'
+        StudyError, match=r'the node table seems a thousand times too large.*units = "mm-t-s" in'
     ):
         measured_from_modes(
             modes((Dof(7, 3), Dof(8, 3)), at),

@@ -126,11 +126,11 @@ BROKEN = [
         behind_its_head(matlab(K=np.eye(3)), struct.pack("<IId", 9, 8, 1.0)),
         "type 9 among its variables",
     ),
-    ("k.mat", b"", "no MATLAB file of version 5 to 7"),
+    ("k.mat", b"", "not a MATLAB file of version 5 to 7"),
     ("k.mat", matlab(K=np.eye(3))[:-20], "is damaged"),
     ("k.mat", b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512), "version 7.3"),
     ("k.mat", matlab(K=np.eye(3), M=np.eye(3)), "holds 2 matrices"),
-    ("k.mat", standing_twice(), "an entry that stands twice"),
+    ("k.mat", standing_twice(), "an entry that is given twice"),
     ("k.mat", matlab(order=3), "holds 0 matrices"),
     ("k.mat", matlab(K=np.eye(3) * 1j), "complex"),
     ("k.mat", matlab(K=np.zeros((2000, 2000))), "unpack to more than"),
@@ -140,12 +140,12 @@ BROKEN = [
     ("k.rsa", b"title\n", "not a Harwell-Boeing file"),
     ("k.npz", b"no archive", "not an .npz archive"),
     ("k.sti", b"", "is empty"),
-    ("k.sti", b"1 1 soft\n", "line 1: 'soft' is no number"),
+    ("k.sti", b"1 1 soft\n", "line 1: 'soft' is not a number"),
     ("k.sti", b"0 1 2.0\n", "CalculiX counts from 1"),
     ("k.sti", b"1 1\n2 2\n", "2 numbers on a line"),
     ("k.sti", b"1 1 1.0 0.0\n2 2 1.0 0.0\n", "4 numbers on a line"),
     ("k.sti", b"1 1 1.0\n2 ", "line 2: 1 numbers on a line where 3 should be"),
-    ("k.sti", b"1.5 1 1.0\n", "line 1: '1.5' is no whole number"),
+    ("k.sti", b"1.5 1 1.0\n", "line 1: '1.5' is not a whole number"),
     ("k.sti", b"1 1 1.0\n99999999999 1 1.0\n", "row or column 99999999999 in a matrix of 2 entries"),
     ("k.sti", b" \n\n", "is empty"),
     ("k.mtx", b"%%MatrixMarket matrix coordinate pattern symmetric\n1 1 1\n1 1\n", "pattern"),
@@ -270,13 +270,13 @@ DAMAGED = [
         HEAD + b"2 2 2\n1 1 2,5\n2 2 1.0\n",
         "line 3: '2,5' holds a comma; write numbers with a decimal point",
     ),
-    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1P+11\n2 2 1.0\n", "line 3: '2.1P\\+11' is no number"),
-    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2 1.0\0\n", "line 4: '1.0.x00' is no number"),
-    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2 1.0e", "line 4: '1.0e' is no number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1P+11\n2 2 1.0\n", "line 3: '2.1P\\+11' is not a number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2 1.0\0\n", "line 4: '1.0.x00' is not a number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2 1.0e", "line 4: '1.0e' is not a number"),
     ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2", "line 4: 2 numbers on a line where 3 should be"),
     ("k.mtx", HEAD + b"2 2 2\n1 1 2 .1\n2 2 1.0\n", "line 3: 4 numbers on a line"),
     ("k.mtx", HEAD + b"2 2 2\n1 1 1e999\n2 2 1.0\n", "line 3: '1e999' is beyond any number"),
-    ("k.mtx", HEAD + b"2 2 2\n1 1e999 1.0\n2 2 1.0\n", "line 3: '1e999' is no whole number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1e999 1.0\n2 2 1.0\n", "line 3: '1e999' is not a whole number"),
     ("k.mtx", HEAD + b"2 2 2\n1 3 1.0\n2 2 1.0\n", "column 3 in a matrix of 2 x 2"),
     ("k.mtx", HEAD + b"2 2 3\n1 1 1.0\n2 2 1.0\n", "3 entries announced and 2 there"),
     ("k.mtx", HEAD + b"999999999 999999999 1\n1 1 1.0\n", "row or column 999999999 in a matrix of 1 entries"),
@@ -320,7 +320,7 @@ def test_what_would_reach_a_parser_unchecked_is_refused(
 @pytest.mark.usefixtures("no_hang")
 def test_a_number_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
     (tmp_path / "k.sti").write_text("1" * 160_000 + "\x1a" + "1" * 40_000)
-    with pytest.raises(StudyError, match="is no number"):
+    with pytest.raises(StudyError, match="is not a number"):
         read_matrix(tmp_path / "k.sti")
 
 
@@ -367,5 +367,5 @@ def test_exponents_of_fortran_in_a_market_file(tmp_path: Path) -> None:
 
 def test_a_row_that_stands_twice_in_an_export(tmp_path: Path) -> None:
     (tmp_path / "k.sti").write_text("1 1 2.0\n1 2 -1.0\n2 2 2.0\n1 2 -1.0\n")
-    with pytest.raises(StudyError, match="1 entries stand twice"):
+    with pytest.raises(StudyError, match="1 entries are given twice"):
         read_matrix(tmp_path / "k.sti")

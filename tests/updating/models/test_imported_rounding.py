@@ -45,7 +45,7 @@ def elastic(given: Frame, count: int = 5) -> np.ndarray:
 
 
 def test_entries_next_to_zero_leave_the_digits_of_all_others() -> None:
-    """1e-310 times the power of ten that makes it a whole number is no number."""
+    """1e-310 times the power of ten that makes it a whole number is not a number."""
     numbers = np.array([1.2345, 6.7891, 2.3457, 9.8763, 1e-310])
     assert decimal_rounding(Sparse(np.diag(numbers))) == 0.5e-4
 

@@ -381,7 +381,7 @@ def test_a_region_without_parts_cannot_be_turned() -> None:
     assert "stiffness_parts" in str(bare.obstacle("E", regional=True))
     assert "mass_parts" in str(bare.obstacle("density", regional=True))
     assert parted.obstacle("density", regional=True) is None
-    assert "know no thickness" in str(parted.obstacle("thickness"))
+    assert "have no thickness" in str(parted.obstacle("thickness"))
 
 
 def test_the_box_of_a_region_is_that_of_its_nodes() -> None:

@@ -1,4 +1,4 @@
-"""Modes of a free structure on its cords are no modes that it lacks."""
+"""Modes of a free structure on its cords are not modes that it lacks."""
 
 from __future__ import annotations
 

@@ -60,7 +60,8 @@ def test_a_remark_stands_where_it_is_more_than_the_noise() -> None:
     for width, remarked in ((0.04, True), (0.001, False)):
         found = theory_error(Predictor(beam(width), test), order)
         assert (
-            any('type = "plate" has both' in note for note in notes_on(found, test, beam(width))) == remarked
+            any('type = "plate" includes both' in note for note in notes_on(found, test, beam(width)))
+            == remarked
         )
 
 

@@ -97,14 +97,14 @@ def test_one_bad_shape_does_not_spoil_the_others() -> None:
     assert found[3] > 0.3
     assert np.delete(found, 3).max() < 0.025
     assert [p.factor for p in result.parameters] == pytest.approx(np.exp(logs), rel=0.02)
-    assert any("that of test mode 4 by" in warning for warning in result.warnings)
+    assert any("that of test mode 4 as" in warning for warning in result.warnings)
 
 
 def test_good_shapes_stated_as_they_are_stay_as_they_are() -> None:
     rng, logs = drawn(3)
     result = both(measured(*truth(logs), np.full(MODES, 0.02), stated=0.02, rng=rng))
     assert result.pairs["shape_sigma"].to_numpy() == pytest.approx(np.full(MODES, 0.02), rel=0.02)
-    assert not any("taken to err" in warning for warning in result.warnings)
+    assert not any("error is taken as" in warning for warning in result.warnings)
 
 
 @pytest.mark.parametrize("stated", [None, 0.02, 0.001])

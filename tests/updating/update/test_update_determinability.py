@@ -100,7 +100,7 @@ def test_a_value_at_its_bound_is_flagged() -> None:
         ({"parameters": ["E"], "weights": [1.0, -2.0, 1.0]}, "none negative"),
         ({"parameters": ["nose.E"]}, "'nose.E'"),
         ({"parameters": []}, "no parameters"),
-        ({"parameters": ["E", "E"]}, "stands twice"),
+        ({"parameters": ["E", "E"]}, "is given twice"),
         ({"parameters": ["E"], "data": ["shapes"]}, "no frequencies"),
         ({"parameters": ["E"], "data": ["frequencies", "sound"]}, "sound"),
         ({"parameters": ["E"], "data": ["frequencies", "shapes"]}, "no shapes were measured"),
@@ -124,7 +124,7 @@ def shapes_at(dofs: tuple[Dof, ...], shapes: np.ndarray) -> Case:
 def test_no_common_mode_is_said() -> None:
     dofs = tuple(Dof(i + 1, 3) for i in range(9))
     # a shape that changes its sign from point to point is none of a clamped beam's lowest
-    with pytest.raises(EstimationError, match="no measured mode looks like") as refused:
+    with pytest.raises(EstimationError, match="no measured mode resembles") as refused:
         update(shapes_at(dofs, (-1.0) ** np.arange(9)), parameters=["E"], weights="relative")
     assert "\n" not in str(refused.value)
 

@@ -23,7 +23,7 @@ def of_body(modes: list[int], *, upside_down: int | None = None) -> Update:
 def test_without_a_degree_of_freedom_nothing_is_tested() -> None:
     result = of_body([0, 1])
     assert result.dof <= 0
-    assert result.warnings[0].startswith("nothing is tested: 2 data and 2 parameters")
+    assert result.warnings[0].startswith("the fit is not tested: 2 data and 2 parameters")
     assert "NOTHING IS TESTED" in result.report() and "nan" not in result.report()
 
 
@@ -49,7 +49,7 @@ def test_a_pair_of_poor_mac_is_warned_of() -> None:
 
 def test_a_good_update_is_not_doubted() -> None:
     result = update(case_of(two_sensors(upside_down=None), LIGHT), parameters=["E"], weights="relative")
-    assert not any("nothing is tested" in w or "mirror" in w for w in result.warnings)
+    assert not any("the fit is not tested" in w or "mirror" in w for w in result.warnings)
 
 
 def test_a_sensor_upside_down_alone_makes_no_pair_poor() -> None:

@@ -45,7 +45,7 @@ class Contributions:
 
 
 def contributions(problem: DiagnosisProblem, comparison: Comparison | None = None) -> Contributions:
-    """Weigh what every mode adds to the gap between the test and the model as it stands.
+    """Return what every mode adds to the gap between the test and the unchanged model.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def _sigmas(distance: float, count: int) -> float:
 
 
 def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str], *, notable: float = 3.0) -> str:
-    """Say which kind of data of which modes is the furthest off.
+    """State which kind of data of which modes is the furthest off.
 
     From ``notable`` standard deviations on a mode carries some of the gap: of twenty modes one in eighteen tests has
     one by chance.

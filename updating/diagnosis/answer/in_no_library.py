@@ -1,4 +1,4 @@
-"""What an answer says of a cause that is in no library."""
+"""What an answer states about a cause outside the library."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class RegionalChange:
 
 @dataclass(frozen=True)
 class SomethingElse(Displayed):
-    """A cause that is in no library: fields of stiffness and mass, of damping and of gains, weighed as the sets are.
+    """A cause that is in no library: fields of stiffness and mass, of damping and of gains, compared as the sets are.
 
     Parameters
     ----------

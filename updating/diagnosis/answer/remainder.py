@@ -34,14 +34,14 @@ def remainder_of(
     *,
     rules: DecisionRules = DEFAULT_RULES,
 ) -> Remainder:
-    """Say what an explanation leaves.
+    """State what an explanation leaves.
 
     Parameters
     ----------
     problem : SpecimenProblem or Several
         Test and model.
     titles : sequence of str
-        Of the studies; said where there are several.
+        Of the studies; given where there are several.
     best : Explanation
         The set of effects.
     shrink : Shrink

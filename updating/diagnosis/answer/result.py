@@ -1,4 +1,4 @@
-"""What a diagnosis says, as records that the face turns into text, JSON and figures."""
+"""What a diagnosis states, as records that the face turns into text, JSON and figures."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Verdict = Literal["named", "class", "unknown", "none"]
 Shortcoming = Literal["fit", "closing", "evidence", "partners", "one size", "library"]
 """What the most probable set lacks where none is an answer: it is rejected, closes too little and leaves more than
 noise, is not clearly more likely than tolerances further off, most modes have no partner, parts of the data want
-another size of it each, or a cause that is in no library may as well be it."""
+another size of it each, or a cause that is not in the library is as likely."""
 
 Metric = Literal["frequency", "damping", "frf", "combined"]
 Place = tuple[float, float, float]
@@ -193,7 +193,7 @@ class Where(Displayed):
     locations : tuple of tuple of float
         All places that hold a notable share of the probability, mirrored ones too, most probable first [m].
     points : tuple of int
-        Test nodes concerned: at the places, or those of which an effect of the measurement speaks.
+        Test nodes concerned: at the places, or those named by an effect of the measurement.
     zones : tuple of Zone
         Probability of each region.
     zones_by : {"explanations", "regions"}
@@ -241,7 +241,7 @@ class Closed:
 
     @property
     def determined(self) -> bool:
-        """Whether the interval leaves out nothing, or nearly all: one that holds both says nothing."""
+        """Whether the interval leaves out nothing, or nearly all: one that holds both is not informative."""
         return self.low95 > 0.0 or self.high95 < self.nearly_all
 
     def __str__(self) -> str:
@@ -371,7 +371,7 @@ class Diagnosis(Shown):
     next_test : tuple of NextTest
         What to measure next.
     warnings : tuple of str
-        What the reader ought to know.
+        What the reader should know.
     not_examined : dict of str to Obstacle
         Effects that could not be examined, and why.
     comparable : bool
@@ -387,7 +387,7 @@ class Diagnosis(Shown):
     searched : tuple of Searched
         How many sets of one cause, of two and so on were searched, and how many there are.
     something_else : SomethingElse, optional
-        A cause that is in no library beside those that are; None where there is no gap, or it was not weighed.
+        A cause that is in no library beside those that are; None where there is no gap, or it was not examined.
     rules : DecisionRules
         What the answer was decided by.
     """

@@ -78,15 +78,15 @@ class DecisionRules:
         A cause whose size in one half of the data is further from that in the other names nothing [sigma]: by chance
         1 in 400 for each of its parameters. Doubled: only a cause that is wrong by far is found out.
     notable_remainder : float
-        R.m.s. residual of a kind of data of a mode, or of a measuring channel, from which on it is said to carry what
-        an explanation leaves [sigma]. Doubled: only the plainest is pointed out.
+        R.m.s. residual of a kind of data of a mode, or of a measuring channel, from which on it is reported to carry
+        what an explanation leaves [sigma]. Doubled: only the plainest is pointed out.
     second_metric : float
         A second kind of data carries the gap, too, if the logarithm of its probability is this share of the first's
         [-]. Judged. Doubled: it would have to be as improbable as the first.
     closable_gap : float
         A gap within this many times the floor has nothing to close [-]. The contract's.
     likely_all_the_same : float
-        From this probability on that there is some cause, the summary says which, though chance might make the gap
+        From this probability on that there is some cause, the summary names it, though chance might make the gap
         [-].
     separate_places : float
         Samples further from each other than this share of the span belong to different places [-]. Doubled: two spots

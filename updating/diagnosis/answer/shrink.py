@@ -29,7 +29,7 @@ def shrinkage(
 ) -> Shrink:
     """Compare the gap before and after.
 
-    Before is the nominal model as it stands, no tolerance moved. In all that comes after, tolerances, calibration and
+    Before is the nominal model, no tolerance moved. In all that comes after, tolerances, calibration and
     the level of damping are refitted, too. Where they are refitted alone, none is taken further than is believed of
     it: they would else close any gap that moves all modes alike, by an absurd modulus.
 
@@ -86,7 +86,7 @@ def _stretch(nothing: Explanation) -> float:
 def _points(
     problem: DiagnosisProblem, nothing: Explanation, best: Explanation, plain: Comparison, metric: Metric
 ) -> HeldPoints | None:
-    """Return the errors of the modal constants at points held out; None where another metric tells the gap."""
+    """Return the errors of the modal constants at points held out; None where another metric measures the gap."""
     if metric not in {"frf", "combined"}:
         return None
     after, alone = points_held_out(problem, best), points_held_out(problem, nothing)

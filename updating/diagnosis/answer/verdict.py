@@ -23,7 +23,7 @@ NAME = "name"
 
 
 def is_significant(found: Search, p_value: float, *, rules: DecisionRules = DEFAULT_RULES) -> bool:
-    """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
+    """Return whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
 
     A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it,
     if it is not as well explained by setting data aside as that effect does, and nothing else.
@@ -77,9 +77,9 @@ def decide(
     Parameters
     ----------
     found : Search
-        What was weighed, most probable first.
+        What was compared, most probable first.
     lacks : str, optional
-        What :func:`shortcoming` says.
+        What :func:`shortcoming` states.
     significant : bool
         Whether there is a gap.
     rules : DecisionRules
@@ -107,7 +107,7 @@ def shortcoming(
     Parameters
     ----------
     found : Search
-        What was weighed, most probable first.
+        What was compared, most probable first.
     comparable : bool
         Whether most measured modes have a partner: the rest alone names no cause.
     closed : float, optional
@@ -132,7 +132,7 @@ def shortcoming(
 
 
 def rejected(row: Compared, rules: DecisionRules) -> bool:
-    """Tell whether a set is no answer.
+    """Return whether a set is no answer.
 
     It fits too badly (sets of several, which have more freedom, must fit better), or only at a size beyond what is
     plausible.
@@ -154,11 +154,11 @@ def _credible(found: Search, rules: DecisionRules) -> tuple[tuple[str, ...], ...
 
     All sets have a share: one whose parameter lies at the end of its range, or which fits badly, is no answer by
     itself, and what it holds makes the others no more certain. What setting data aside explains without it is no cause
-    and has none. Where no set is better than no effect there are no sets.
-    A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
-    widely they may range, and that is no measurement. A part of the first that fits by itself stays, too, unless the
-    whole is better by as much as shows a gap: that there is something beside it is the more probable, and not sure.
-    What adds to the first a cause that shows in no datum says of the data what the first says, and counts for it.
+    and has none. Where no set is better than no effect there are no sets. A rival whose best parameters fit as well is
+    behind by its prior alone: by how many parameters it has, and how widely they may range, and that is no
+    measurement. A part of the first that fits by itself stays, too, unless the whole is better by as much as shows a
+    gap: that there is something beside it is the more probable, and not sure. What adds to the first a cause that
+    shows in no datum makes the same statement about the data as the first, and counts for it.
     """
     better = _better(found, rules)
     if not better:
@@ -186,19 +186,19 @@ def _credible(found: Search, rules: DecisionRules) -> tuple[tuple[str, ...], ...
 
 
 def _adds_nothing(first: Compared, row: Compared, rules: DecisionRules) -> bool:
-    """Tell whether a set is the first with more causes, and fits no better."""
+    """Return whether a set is the first with more causes, and fits no better."""
     gain = row.explanation.best.marginal.log_likelihood - first.explanation.best.marginal.log_likelihood
     return holds(row.names, first.names) and 2 * gain < rules.close_fits
 
 
 def _part_left(first: Compared, row: Compared, rules: DecisionRules) -> bool:
-    """Tell whether a set is a part of the first that fits by itself, and not much worse."""
+    """Return whether a set is a part of the first that fits by itself, and not much worse."""
     part = row is not first and holds(first.names, row.names) and row.as_stated >= rules.doubted_fit
     return part and first.explanation.log_evidence - row.explanation.log_evidence < rules.whole_beside_part
 
 
 def _as_good(first: Compared, row: Compared, rules: DecisionRules) -> bool:
-    """Tell whether a rival that fits as well stays, though it may be behind by its prior alone.
+    """Return whether a rival that fits as well stays, though it may be behind by its prior alone.
 
     It does where it is not far behind, or where its fit is no greater an achievement: no more of its parameters are
     determined by the data than of the first's, and none lies at the very end of what is believed.
@@ -218,7 +218,7 @@ def _determined(row: Compared, rules: DecisionRules) -> int:
 
 
 def included(found: Search) -> dict[str, float]:
-    """Return the probability of each effect weighed that it is among the causes [-]."""
+    """Return the probability of each effect compared that it is among the causes [-]."""
     total = sum(row.probability for row in found.compared)
     names = dict.fromkeys(name for row in found.compared for name in row.names)
     return {
@@ -229,7 +229,7 @@ def included(found: Search) -> dict[str, float]:
 def rank(
     problem: DiagnosisProblem, found: Search, *, rules: DecisionRules = DEFAULT_RULES
 ) -> tuple[Ranked, ...]:
-    """Turn what was weighed into rows of the ranking, the empty set left out."""
+    """Turn what was compared into rows of the ranking, the empty set left out."""
     rows = [row for row in found.compared if row.names]
     total = sum(row.probability for row in found.compared)
     return tuple(

@@ -24,7 +24,7 @@ from updating.thresholds import NEGLIGIBLE_PROBABILITY
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
 
 LABELS = (".point", ".points", ".channel")
-"""How parameters that speak of points of the test end."""
+"""Endings of parameters that name points of the test."""
 
 
 def locate(
@@ -35,18 +35,18 @@ def locate(
     whole: Search | None = None,
     rules: DecisionRules = DEFAULT_RULES,
 ) -> Where:
-    """Say where the cause sits, averaged over all explanations by their probability.
+    """State where the cause sits, averaged over all explanations by their probability.
 
     Parameters
     ----------
     problem : Problem
         Test and model.
     found : Search
-        What was weighed.
+        What was compared.
     verdict : {"named", "class", "unknown", "none"}
         With none, no gap, the channel is ``none``; where nothing is named, regions are compared by themselves.
     whole : Search, optional
-        What was weighed for several specimens, of which ``found`` holds what acts on this one.
+        What was compared for several specimens, of which ``found`` holds what acts on this one.
     rules : DecisionRules
         What the answer is decided by.
     """
@@ -116,7 +116,7 @@ def _likely_places(
 ) -> tuple[Cluster, ...]:
     """Return the places of an explanation in all channels that act together.
 
-    On imported matrices places are forms of their own: what these data cannot tell from the best are places, too.
+    On imported matrices places are forms of their own: what these data cannot separate from the best are places, too.
     """
     forms = [(leader.explanation, 1.0)]
     if not problem.predictor.spec.outlined:
@@ -147,7 +147,7 @@ def _place(place: FloatArray) -> Place:
 
 
 def _points(problem: SpecimenProblem, leader: Compared | None) -> tuple[int, ...]:
-    """Return the test nodes of which an effect of the measurement speaks."""
+    """Return the test nodes named by an effect of the measurement."""
     if leader is None:
         return ()
     explanation, test = leader.explanation, problem.measured

@@ -1,1 +1,1 @@
-"""A cause in no library: fields of stiffness and mass, loss and gains, weighed as the library's causes are."""
+"""A cause in no library: fields of stiffness and mass, loss and gains, compared as the library's causes are."""

@@ -1,7 +1,7 @@
 """What a cause in no library may change: stiffness and mass of each region, the damping of each mode, each channel.
 
-What regions change is taken by differences of the comparison itself, so that every model and every kind of data says it
-alike, a baseline included: the field is what came after it.
+What regions change is taken by differences of the comparison itself, so that every model and every kind of data gives
+it alike, a baseline included: the field is what came after it.
 """
 
 from __future__ import annotations

@@ -101,7 +101,7 @@ class Field:
 
 
 def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = Grid()) -> Field:
-    """Weigh a cause in no library beside a set of causes; beside none it is the cause.
+    """Compare a cause outside the library beside a set of causes; beside none it is the cause.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = G
 
 
 def _kinds(here: Columns, grid: Grid, lengths: int) -> list[Kind]:
-    """Return all choices that the data may tell of, no field at all among them."""
+    """Return all choices that the data may support, no field at all among them."""
     structure = [Kind()]
     for properties in (("E",), ("density",), PROPERTIES):
         structure += [Kind(properties, *one) for one in product(grid.amplitudes, range(lengths))]

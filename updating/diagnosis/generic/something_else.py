@@ -24,14 +24,14 @@ NAMES: tuple[Literal["stiffness"], Literal["mass"]] = ("stiffness", "mass")
 
 
 def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRules) -> SomethingElse | None:
-    """Weigh a cause in no library against all sets, and beside the first of them.
+    """Compare a cause outside the library against all sets, and beside the first of them.
 
     Parameters
     ----------
     problem : SpecimenProblem or Several
         Test and model.
     found : Search
-        What was weighed.
+        What was compared.
     rules : DecisionRules
         The prior of such a cause.
 
@@ -59,8 +59,8 @@ def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRule
 def _first_and_more(problem: SpecimenProblem, found: Search, row: Compared, first: Field) -> list[float]:
     """Return the logarithm of the evidence and prior of the first set with a cause in no library beside it.
 
-    What that cause does beside the set speaks for no other one. A set that stands with data set aside is weighed
-    without that, too: the data may be that cause's.
+    What that cause does beside the set is no evidence for another one. A set that stands with data set aside is
+    compared without that, too: the data may be that cause's.
     """
     prior, one = log_prior(len(row.names), found.examined), row.explanation
     scores = [one.log_evidence + first.log_factor + prior]
@@ -73,7 +73,7 @@ def _first_and_more(problem: SpecimenProblem, found: Search, row: Compared, firs
 
 
 def _without_effects(problem: SpecimenProblem, found: Search) -> list[Explanation]:
-    """Return no effect as the sets were weighed: on each theory, as the data are stated and with outliers."""
+    """Return no effect as the sets were compared: on each theory, as the data are stated and with outliers."""
     theories = (False, True) if found.both else (False,)
     half = -float(np.log(len(theories)))
     none = [

@@ -43,7 +43,7 @@ class _Found:
 
     @property
     def stated(self) -> tuple[tuple[int, int], ...]:
-        """The pairs of which the proposal speaks: those separated; else the first, or the one that comes nearest."""
+        """The pairs that the proposal names: those separated; else the first, or the one that comes nearest."""
         return self.separated or (self.first or max(self.sigmas, key=lambda pair: self.sigmas[pair]),)
 
     @property
@@ -72,12 +72,12 @@ def propose(
     diagnosis_problem : Problem or Several
         Test and model.
     found : Search
-        What was weighed.
+        What was compared.
     sets : tuple of tuple of str
         Sets of effects of the answer.
     verdict : str
-        What was decided. A cause that is named is told from its runners-up, to confirm it, the most probable of them
-        first.
+        What was decided. A cause that is named is separated from its runners-up, to confirm it, the most probable of
+        them first.
     separated : float
         The rule ``separated_sigma`` [sigma].
     worthwhile : float

@@ -1,4 +1,4 @@
-"""What every hypothetical test tells: what it costs, and what each explanation predicts of it."""
+"""What every hypothetical test defines: what it costs, and what each explanation predicts of it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Rival:
     diagnosis_problem : Problem or Several
         Test and model.
     explanation : Explanation
-        What was weighed.
+        What was compared.
     """
 
     diagnosis_problem: DiagnosisProblem

@@ -97,7 +97,7 @@ class Chain(InstrumentReading):
     """What a calibration of the chain with a known free mass reaches: relative 1 sigma [-]."""
 
     delay_sigma = 5e-6
-    """What the same test says of a delay between the channels: 1 sigma [s]."""
+    """What the same test determines of a delay between the channels: 1 sigma [s]."""
 
     measure = (
         f"hit a known free mass with the same hammer and sensor: calibrates the chain to {100 * sigma:g} %"

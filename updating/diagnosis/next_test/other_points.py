@@ -115,7 +115,9 @@ class OtherPoints(Maker):
     """The further points that a specimen admits, or the shapes it lacks."""
 
     away = 0.04
-    """Further points are at least this share of the length away from those there are [-]: nearer ones say the same."""
+    """Further points are at least this share of the length away from those there are [-]: nearer ones give the same
+    information.
+    """
 
     def trials(self, site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
         """Give them."""

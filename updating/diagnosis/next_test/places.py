@@ -26,7 +26,7 @@ def grid(spec: Spec) -> FloatArray:
 
 
 def in_liquid(problem: SpecimenProblem, *, thin: float = 10.0) -> bool | None:
-    """Tell whether a specimen is stated to be in a liquid; None where nothing is stated.
+    """Return whether a specimen is stated to be in a liquid; None where nothing is stated.
 
     A fluid less dense than ``thin`` [kg/m^3] is a gas: air has 1.2, light oils 700.
     """

@@ -39,7 +39,7 @@ class Repeat(Trial):
         """Return the problem of such a test, whose data are still those of the test so far."""
 
     def keeps(self, effect: Effect) -> bool:
-        """Tell whether an effect is there in this test, too."""
+        """Return whether an effect is there in this test, too."""
         return True
 
     def outcomes(self, site: Site, rivals: tuple[Rival, ...]) -> tuple[Outcome, ...]:
@@ -102,7 +102,7 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
     measured : Measured
         Points, FRFs and how well they are known.
     predictor : Predictor
-        The model, looked at from these points.
+        The model, observed from these points.
     state : State
         Departure from it.
     order : (n_modes,) int array

@@ -21,7 +21,7 @@ def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...
     site : Site
         The specimen.
     found : Search
-        What was weighed.
+        What was compared.
     fewest : int
         With fewer points more of them are asked for: shapes of a few points are alike.
     """
@@ -38,13 +38,11 @@ def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...
     if problem.baseline is None:
         stated.append(_another_state(problem))
     if not stated:
-        stated.append(
-            "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
-        )
+        stated.append("remount the specimen and repeat the test: this shows whether the gap is repeatable")
     if len(test.points) < fewest and spec.outlined:
-        stated.append("measure at five points or more: where shapes miss says where to look")
+        stated.append("measure at five points or more: the place where shapes deviate shows where to look")
     if spec.clamped and spec.outlined:
-        stated.append("hang the specimen up free and test it: is the gap the clamp's?")
+        stated.append("hang the specimen up free and test it: this shows whether the clamp causes the gap")
     where = f"{site.title}: " if site.title else ""
     return tuple(NextTest(where + text, (), float("nan"), whole=False) for text in stated)
 

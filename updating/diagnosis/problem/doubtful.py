@@ -23,14 +23,14 @@ def notes_on_doubtful(
     problem : Problem
         Test and model.
     explained : str, optional
-        What the answer says causes the gap; left out, nothing that is sure.
+        What the answer states causes the gap; left out, nothing that is sure.
     another : float
         R.m.s. error of the frequencies from which test and model are hardly the same structure [-]: a stiffness off
         by a factor of two and more. Doubled: the warning comes for models in wrong units only.
     alone, deviations : float
-        A frequency so far from what the others' median error says [-], and so many times the median deviation of the
-        others [-], stands alone. Judged: few effects move one mode only, and none by that much. Doubled: only mistaken
-        modes are still pointed out. Of fewer than four modes none can be said to stand alone: half of them would be.
+        A frequency so far from the others' median error [-], and so many times the median deviation of the others [-],
+        stands alone. Judged: few effects move one mode only, and none by that much. Doubled: only mistaken modes are
+        still pointed out. Of fewer than four modes none can be identified as deviating: half of them would be.
     """
     test, model = problem.measured, problem.nominal
     error = np.log(model.frequency / test.frequency)
@@ -42,19 +42,23 @@ def notes_on_doubtful(
             return []
         size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
         notes.append(
-            f"frequencies are {percent(size)} off (r.m.s.): test and model are hardly the same structure, or the modes "
-            "are wrongly paired; check size, material, clamps and band before anything else"
+            f"frequencies are {percent(size)} off (r.m.s.): test and model are probably different "
+            "structures, or the modes are wrongly paired; first check size, material, clamps and band"
         )
         return notes
     if len(error) >= 4:
         away = np.abs(error - np.median(error))
         bar = max(alone, deviations * float(np.median(away)))
-        settle = "a slip, or a mode mistaken for another? Nothing should be concluded before that is settled"
+        settle = "a mistake, or a mode paired wrongly? Settle this before drawing conclusions"
         if explained:
-            settle = f"{explained} explains it, and rests on it: see that it is no slip and no other mode"
+            settle = (
+                f"{explained} explains it and depends on it: make sure that it is neither a mistake "
+                "nor another mode"
+            )
         notes += [
-            f"the mode at {hertz(test.frequency[i])} stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
-            f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; {settle}"
+            f"the mode at {hertz(test.frequency[i])} deviates from the others: the model is off by "
+            f"{100 * np.expm1(error[i]):+.0f} % there and by {100 * np.expm1(np.median(error)):+.0f} % in "
+            f"most other modes; {settle}"
             for i in np.flatnonzero(away > bar).tolist()
         ]
     return notes

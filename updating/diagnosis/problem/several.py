@@ -88,7 +88,7 @@ class Several:
     def applies(self, effect: Effect) -> Obstacle | None:
         """Return why an effect can be examined on none of the specimens, or None."""
         if effect.labels:
-            what = "which point it is differs from test to test; diagnose each specimen by itself"
+            what = "the point differs between tests; diagnose each specimen separately"
             return Obstacle(Lack.ONE_TEST, what)
         found = [problem.applies(effect) for problem in self.specimens]
         return None if None in found else found[0]

@@ -31,7 +31,7 @@ from updating.thresholds import (
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """A candidate after looking at the data.
+    """A candidate after comparison with the data.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Explanation:
     peaks : tuple of Peak
         The maxima found.
     laplace_only : bool
-        Whether the samples were weighed by parabolas only.
+        Whether the samples were weighted by parabolas only.
     other : float
         Logarithm of what the evidence of the other theory adds, relative to this one's [-].
     """
@@ -74,11 +74,11 @@ class Explanation:
 
     @property
     def effective(self) -> float:
-        """As how many independent samples of the posterior the weighted ones tell; nothing of a draft [-]."""
+        """As how many independent samples of the posterior the weighted ones are worth; nothing of a draft [-]."""
         return 0.0 if self.laplace_only else effective(self.weights)
 
     def restricted(self, candidate: Candidate, columns: IntArray) -> Explanation:
-        """Return what it says of some of its effects alone, of those whose coordinates are ``columns``."""
+        """Return its result for some of its effects alone, of those whose coordinates are ``columns``."""
         best = replace(self.best, coordinates=self.best.coordinates[columns])
         return replace(self, candidate=candidate, best=best, samples=self.samples[:, columns], peaks=())
 
@@ -93,7 +93,7 @@ def explain(
     maximisations: int = CLIMBS,
     bar: float = -np.inf,
 ) -> Explanation:
-    """Weigh a candidate.
+    """Evaluate a candidate.
 
     Parameters
     ----------
@@ -106,10 +106,10 @@ def explain(
     density : int
         Samples at a time: this many times two to the number of parameters.
     laplace_only : bool
-        Whether the samples are weighed by the parabolas through the peaks instead of by predictions: enough to
-        tell the hopeless from the rest.
+        Whether the samples are weighted by the parabolas through the peaks instead of by predictions: enough to
+        separate the hopeless from the rest.
     maximisations : int
-        From how many starting places, those that a short climb finds best, the search goes on to the top.
+        From how many starting places, those that a short maximisation finds best, the search goes on to the top.
     bar : float
         Log-likelihood that another candidate has reached; what stays far below it is searched less closely.
 
@@ -138,7 +138,7 @@ def _beginnings(problem: DiagnosisProblem, candidate: Candidate) -> list[FloatAr
 
 
 def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int = 32) -> Explanation:
-    """Weigh a draft by predictions, from the maxima it found.
+    """Evaluate a Laplace approximation by predictions, from the maxima it found.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def _peaks(
 
 
 def _on_a_line(places: list[FloatArray]) -> bool:
-    """Tell whether places follow each other along a straight line on which every parameter changes."""
+    """Return whether places follow each other along a straight line on which every parameter changes."""
     steps = np.diff(np.stack(places), axis=0)
     first = steps[0] / max(float(np.linalg.norm(steps[0])), 1e-300)
     straight = np.allclose(steps, np.outer(steps @ first, first), atol=1e-9)
@@ -223,7 +223,7 @@ def _on_a_line(places: list[FloatArray]) -> bool:
 
 
 def _maxima(heights: FloatArray) -> BoolArray:
-    """Tell which heights along a line are no lower than their neighbours: searches from the others end there, too."""
+    """Return which heights along a line are no lower than their neighbours: searches from the others end there, too."""
     around = np.concatenate([[-np.inf], np.nan_to_num(heights, nan=-np.inf), [-np.inf]])
     level = around[1:-1] + AT_REST  # on level ground all are
     return np.asarray((level >= around[:-2]) & (level >= around[2:]))

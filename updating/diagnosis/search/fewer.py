@@ -57,7 +57,7 @@ def _without(problem: DiagnosisProblem, whole: Explanation, left: int) -> Explan
 
 
 def _same(one: Candidate, other: Candidate) -> bool:
-    """Tell whether two candidates are the same effects in the same forms, in any order, on whichever theory."""
+    """Return whether two candidates are the same effects in the same forms, in any order, on whichever theory."""
     if one.outliers or len(one.effects) != len(other.effects):
         return False
     forms = [sorted((e.key, str(f)) for e, f in zip(c.effects, c.forms, strict=True)) for c in (one, other)]

@@ -234,7 +234,7 @@ def maximise(
     rounds: int = 20,
     bar: float = -np.inf,
 ) -> Peak:
-    """Climb to the nearest maximum of the marginal likelihood within the prior's range.
+    """Maximise to the nearest maximum of the marginal likelihood within the prior's range.
 
     Parameters
     ----------
@@ -247,9 +247,9 @@ def maximise(
     keep : (n,) bool array, optional
         Data to use; left out, all.
     rounds : int
-        Most steps taken; a climb that is at rest ends before.
+        Most steps taken; a maximisation that is at rest ends before.
     bar : float
-        Log-likelihood that has been reached elsewhere: a climb far below that gains little ends.
+        Log-likelihood that has been reached elsewhere: a maximisation far below that gains little ends.
     """
     point, slope = _ascend(problem, candidate, start, keep, rounds, bar)
     if not point.possible:
@@ -280,7 +280,7 @@ def _ascend(
     rounds: int,
     bar: float,
 ) -> tuple[Point, _Slope | None]:
-    """Return where a climb ends and the slope it was last on; None where that is to be taken anew.
+    """Return where a maximisation ends and the slope it was last on; None where that is to be taken anew.
 
     On its way it takes along where tolerances came to rest. Where they rest higher from their own middle, as they may
     where close modes have changed places meanwhile, it goes on from there.

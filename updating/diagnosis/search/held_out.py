@@ -49,7 +49,7 @@ def points_held_out(
     -------
     residual : (n,) array
         Measured minus predicted data [-].
-    told : (n,) bool array
+    predicted : (n,) bool array
         Which of them are constants of modes that have a partner.
     None
         Where there are too few points to leave any out.

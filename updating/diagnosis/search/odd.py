@@ -1,4 +1,4 @@
-"""What fits once a few data are taken to be worse than stated: weighed beside the same explanation as it stands."""
+"""What fits once a few data are taken to be worse than stated: compared with the same explanation as it stands."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class _Choice:
 
 
 def with_odd_data(problem: DiagnosisProblem, found: Sequence[Explanation]) -> list[Explanation]:
-    """Weigh again, with outliers, what does not fit but would with them, and beside it what has as much evidence.
+    """Evaluate again, with outliers, what does not fit but would with them, and beside it what has as much evidence.
 
     No effect at all is among the latter, or a cause would be believed for the data that it alone may set aside.
 

@@ -12,7 +12,7 @@ from updating.thresholds import COUNT_PRIOR
 
 
 def holds(whole: Sequence[str], part: Sequence[str]) -> bool:
-    """Tell whether a set of causes has all of another, one that occurs twice as often."""
+    """Return whether a set of causes has all of another, one that occurs twice as often."""
     return not Counter(part) - Counter(whole)
 
 

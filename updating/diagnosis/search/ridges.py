@@ -1,4 +1,4 @@
-"""Ridges of the likelihood: where the data know a combination of parameters alone, followed as it bends.
+"""Ridges of the likelihood: where the data determine only a combination of parameters, followed as it bends.
 
 A fully clamped plate feels shear and Poisson's coupling as one sum; of water near a wall density and distance go
 together. A parabola through one place of such a ridge lies along its tangent there and misses the rest of it.

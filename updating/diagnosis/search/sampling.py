@@ -2,7 +2,7 @@
 
 The proposals are a mixture: the prior itself, and a t-distribution about every maximum. So it is right for a maximum at
 an end of the prior, for several maxima, and for a parameter the data do not see, where a Laplace approximation is not.
-All samples of all rounds are weighed by the whole mixture that they were drawn from (Veach and Guibas 1995), and each
+All samples of all rounds are weighted by the whole mixture that they were drawn from (Veach and Guibas 1995), and each
 round fits the mixture to them by a step of expectation and maximisation (Cappe, Douc, Guillin, Marin and Robert 2008,
 Statistics and Computing 18, 447-459). What samples of the prior hold of the weight becomes a component of its own.
 """
@@ -68,7 +68,7 @@ class Mixture:
     ) -> Mixture:
         """Return the mixture after one step of expectation and maximisation, (m, k) samples with weights (m,) [-].
 
-        A component that few samples speak for stays nearly as wide as it was, and no narrower than ``least_spread``;
+        A component that few samples support stays nearly as wide as it was, and no narrower than ``least_spread``;
         one with less than ``least_share`` of the weight goes [-].
         """
         parts = self.log_parts(samples)
@@ -121,7 +121,7 @@ class Posterior:
 
 
 def effective(weights: FloatArray) -> float:
-    """Return as how many independent samples the weighted ones tell (Kish 1965), weights (m,) summing to 1 [-]."""
+    """Return as how many independent samples the weighted ones are worth (Kish 1965), weights (m,) summing to 1 [-]."""
     return float(1 / np.sum(weights**2))
 
 

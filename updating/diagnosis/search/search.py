@@ -1,9 +1,9 @@
-"""Which candidates are weighed: singles first, then pairs that may be better, then one cause more where none fits.
+"""Which candidates are compared: singles first, then pairs that may be better, then one cause more where none fits.
 
 That a single effect fits ends the search, unless it is a sketch that leaves more of itself in doubt than the noise
 does: such a one may fit anything, and a second cause be plain in what is left. Beside it a second is sought.
 
-An effect may come in several forms (which point, which sign); each is weighed by itself, with its share of the
+An effect may come in several forms (which point, which sign); each is compared by itself, with its share of the
 effect's prior, and their evidence is added up.
 """
 
@@ -44,8 +44,8 @@ from updating.thresholds import (
     WITHIN_REACH,
 )
 
-BENEATH = "what it changes of a plate is computed, and put under every set of causes where it shows"
-"""Why a plate's theory is not weighed as a cause."""
+BENEATH = "its effect on a plate is computed, and added to every set of causes where it exceeds the noise"
+"""Why a plate's theory is not examined as a cause."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -55,7 +55,7 @@ class Compared:
     Parameters
     ----------
     explanation : Explanation
-        What was weighed.
+        What was compared.
     probability : float
         Its share [-].
     p_value : float
@@ -107,7 +107,7 @@ class Searched:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """All that was weighed.
+    """All that was compared.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ class Search:
     not_examined : dict
         Effects left out, and why.
     both : bool
-        Whether every set was weighed on the model's theory and on the fuller one.
+        Whether every set was compared on the model's theory and on the fuller one.
     examined, repeated : int
         How many effects the sets are made of, and how many of them a set may have twice.
     """
@@ -156,7 +156,7 @@ def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[
 
 
 def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
-    """Weigh nothing, every single effect, and sets of more where those of fewer do not explain the data.
+    """Evaluate no effect, every single effect, and sets of more where those of fewer do not explain the data.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def _as_stated(found: list[Explanation]) -> list[Explanation]:
 
 
 def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: bool = False) -> bool:
-    """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size.
+    """Return whether any of the probable explanations fits beyond doubt, and at a plausible size.
 
     Where it has to fit well, its fit is no rarer than one in ten.
     """
@@ -210,7 +210,7 @@ def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: boo
 
 
 def _by_its_doubt(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
-    """Tell whether the most probable explanation is a sketch that may fit by what it leaves in doubt of itself.
+    """Return whether the most probable explanation is a sketch that may fit by what it leaves in doubt of itself.
 
     It may where that doubt is far larger than the noise of the frequencies.
     """
@@ -224,7 +224,7 @@ def _by_its_doubt(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
 
 
 def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
-    """Weigh by predictions what drafts left within reach of the best; the rest stays as drafted."""
+    """Evaluate by predictions what Laplace approximations left within reach of the best; the rest stays as drafted."""
     finished = list(found)
     for evaluation in range(FINISHING_ROUNDS):
         rows = _compare(finished)
@@ -322,15 +322,15 @@ def _compare(found: list[Explanation]) -> list[Compared]:
 
 
 def _beneath(problem: DiagnosisProblem) -> bool:
-    """Tell whether theory is no cause to be named but what every set, the empty one too, stands on: of plates.
+    """Return whether theory is no cause to be named but what every set, the empty one too, stands on: of plates.
 
-    What a thin plate lacks is computed mode by mode; nobody who models one means that the specimen has no shear.
+    What a thin plate lacks is computed mode by mode; no modeller assumes that the specimen has no shear.
     """
     return all(one.predictor.spec.kind == "plate" for one in problem.specimens)
 
 
 def _on_both(problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation) -> bool:
-    """Tell whether every set must be weighed on the fuller theory as well.
+    """Return whether every set must be compared on the fuller theory as well.
 
     It must where that theory moves frequencies or shapes by more than a part of the noise, unless, where theory is a
     cause like others, it alone explains the data: then nothing else is needed beside it.
@@ -346,7 +346,7 @@ def _on_both(problem: DiagnosisProblem, effects: list[Effect], nothing: Explanat
 def _singles(
     problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, *, both: bool
 ) -> list[Explanation]:
-    """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
+    """Evaluate every form of every effect, the simple ones first: what they reach is the bar for the others."""
     forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
     forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
     bar, found = nothing.best.marginal.log_likelihood, []
@@ -359,7 +359,7 @@ def _singles(
 def _single(
     problem: DiagnosisProblem, effect: Effect, form: Variant, bar: float, *, both: bool
 ) -> Explanation:
-    """Weigh one form of an effect, where the theory falls short on either theory."""
+    """Evaluate one form of an effect, where the theory falls short on either theory."""
     plain = explain(problem, Candidate((effect,), chosen=(form,)), laplace_only=True, bar=bar)
     if not both or effect.fuller:
         return plain

@@ -39,7 +39,7 @@ from updating.thresholds import (
 
 
 def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) -> list[Explanation]:
-    """Weigh the pairs that promise the most, from the best of either effect alone and from no effect at all.
+    """Evaluate the pairs that promise the most, from the best of either effect alone and from no effect at all.
 
     Parameters
     ----------
@@ -48,9 +48,9 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) 
     found : list of Explanation
         No effect, and every single one.
     far : bool
-        Whether no single effect explains the data well: the most promising pairs are weighed in any case, and tested
+        Whether no single effect explains the data well: the most promising pairs are compared in any case, and tested
         from no effect at all, too, about every starting place of either, an evaluation of each and some for its
-        sensitivities. Else only those are weighed that promise to come near the best.
+        sensitivities. Else only those are compared that promise to come near the best.
     """
     singles = [e for e in found if e.names]
     possible = [e for e in singles if e.best.possible]
@@ -102,7 +102,7 @@ def _placed(problem: DiagnosisProblem, parts: list[Part]) -> list[FloatArray]:
 
 @dataclass(frozen=True, eq=False)
 class _Draft:
-    """A pair that may be weighed.
+    """A pair that may be compared.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def _promising(drafts: list[_Draft]) -> list[_Draft]:
 
 
 def _best_forms(problem: DiagnosisProblem, chosen: list[_Draft], drafts: list[_Draft]) -> list[_Draft]:
-    """Return the same pairs of effects in the forms that a short climb finds best.
+    """Return the same pairs of effects in the forms that a short maximisation finds best.
 
     On imported matrices every place is a form of its own, and a linear step errs by more than two neighbours differ.
     """
@@ -181,7 +181,8 @@ def _after_few_steps(problem: DiagnosisProblem, first: Part, second: Part, place
 def _in_other_forms(
     problem: DiagnosisProblem, pair: Explanation, singles: list[Explanation], bar: float
 ) -> list[Explanation]:
-    """Weigh a pair with either effect in another of its forms, where a short climb finds one that explains more.
+    """Evaluate a pair with either effect in another of its forms, where a short maximisation finds one that explains
+    more.
 
     Score tests choose the forms of a pair by a linear step from one effect's best, where the other is not yet what it
     is beside it: which law a damping follows shows only once a clamp has taken its share.
@@ -306,7 +307,7 @@ def _together(nominal: Point, reaches: list[list[_Reach]], pairs: list[tuple[int
 def _alike(
     problem: DiagnosisProblem, singles: list[Explanation], pairs: list[Explanation], bar: float
 ) -> list[Explanation]:
-    """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
+    """Try equivalents of each member of the best pair: one of the two in the place of an effect like it.
 
     Such a rival may fit as well where it alone, at another place, fits too badly for the score test to choose it.
     """

@@ -54,7 +54,7 @@ def joined(one: Candidate, two: Candidate) -> Candidate:
 
 
 def same_place_twice(problem: DiagnosisProblem, one: Candidate, two: Candidate) -> bool:
-    """Tell whether an effect of one candidate is also in the other, at one and the same named place.
+    """Return whether an effect of one candidate is also in the other, at one and the same named place.
 
     A region whose mass is multiplied twice is multiplied once by the product: the two are one cause, and their sizes
     are not determined. What is searched for its place may be at two of them.

@@ -76,7 +76,7 @@ class ChannelGain(Effect):
         return concerned_places(predictor.measured, values)
 
     def sentence(self, values: Values) -> str:
-        """Say whether it is a fixed sensor or points of the end that roved."""
+        """State whether it is a fixed sensor or points of the end that roved."""
         if "channel" not in values:
             return self.summary
         sensor = values["channel"]

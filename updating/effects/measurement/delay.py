@@ -13,13 +13,13 @@ PERIODS = 2.0
 """The longest delay, in periods of the highest mode: some five samples at 2.56 samples a period [-]."""
 
 LOOKED_AT = 801
-"""Delays at which the phases are looked at, and..."""
+"""Delays at which the phases are examined, and..."""
 
 STARTS = 4
 """...how many of them a search starts from."""
 
 ROUGHLY = 0.03
-"""How closely the phases are looked at: what filters and complex modes turn them by [rad]."""
+"""How closely the phases are examined: what filters and complex modes turn them by [rad]."""
 
 
 class TimeDelay(Effect):

@@ -53,7 +53,10 @@ class Drift(Effect):
         test = predictor.measured
         if test.trend is not None and np.isfinite(test.trend).any():
             return None
-        what = "nothing says in which order at least three points were measured: it takes FRFs or hits of a roving test"
+        what = (
+            "the measuring order of at least three points is unknown: FRFs or hits of a roving test "
+            "are needed"
+        )
         return Obstacle(Lack.DATA, what)
 
     def state(self, predictor: Predictor, values: Values) -> State:

@@ -1,4 +1,4 @@
-"""Points of a test as effects speak of them: by node number."""
+"""Points of a test as effects name them: by node number."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class Polarity(Effect):
     of_sensor = True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return nothing to search: which points it is, the variant says."""
+        """Return nothing to search: the variant states which points it is."""
         return ()
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
@@ -83,7 +83,7 @@ class Polarity(Effect):
         return concerned_places(predictor.measured, values)
 
     def sentence(self, values: Values) -> str:
-        """Say whether it is a fixed sensor or points of the end that roved."""
+        """State whether it is a fixed sensor or points of the end that roved."""
         if "channel" in values:
             return (
                 f"The sensor {values['channel']} is reversed in sign, whichever point is hit: mounted upside down, or "

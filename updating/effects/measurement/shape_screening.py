@@ -14,7 +14,7 @@ from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 
 PROMISING = 3
-"""How many points, or pairs of points, a look at the shapes passes on to be weighed."""
+"""How many points, or pairs of points, a look at the shapes passes on to be compared."""
 
 
 DOUBT = 0.02

@@ -28,7 +28,7 @@ class SwappedPoints(Effect):
     phrase = "swapped test points"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return nothing to search: which points it is, the variant says."""
+        """Return nothing to search: the variant states which points it is."""
         return ()
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:

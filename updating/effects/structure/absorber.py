@@ -1,4 +1,4 @@
-"""A mass that hangs on a spring and a dashpot: a part come loose, a cable's connector, a damper nobody modelled."""
+"""A mass that hangs on a spring and a dashpot: a loose part, a cable's connector, a damper that was not modelled."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ AWAY = 4.0
 isolates itself, higher it is a mass that does not swing; neither shows a mode of its own in the band."""
 
 DAMPED = (1e-3, 0.5)
-"""Range of its damping ratio: from steel on steel to a mode that no test tells from the floor [-]."""
+"""Range of its damping ratio: from steel on steel to a mode that no test distinguishes from the floor [-]."""
 
 ALONG = 12
 """So many places along a beam are starts: twice the half waves of the highest mode of most bands."""
@@ -58,7 +58,7 @@ class Absorber(Effect):
         high = max(AWAY * predictor.measured.top, AWAY**2 * low)
         heavy = "from what hardly shows to a third of the structure's own mass"
         where = "its own mode among those of the band, or beside them"
-        lossy = "from steel on steel to a mode that no test tells from the floor"
+        lossy = "from steel on steel to a mode that no test distinguishes from the floor"
         return (
             *outline(predictor),
             Parameter("mass", "kg", MASS[0] * whole, MASS[1] * whole, heavy, log=True),
@@ -79,7 +79,7 @@ class Absorber(Effect):
         damped until no test finds it is a dashpot to the ground: all of them other effects, with fewer parameters.
         """
         if not predictor.measured.has_shapes:
-            return Obstacle(Lack.DATA, "it takes shapes to see which mode the model lacks")
+            return Obstacle(Lack.DATA, "shapes are needed to identify the mode that the model lacks")
         if predictor.measured.unpaired is None:
             what = "it makes a mode of its own, and every measured mode is one of the model's"
             return Obstacle(Lack.DATA, what)
@@ -90,7 +90,7 @@ class Absorber(Effect):
         return float(values["mass"])
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that the dashpot does, and nothing else."""
+        """State that the dashpot does, and nothing else."""
         return parameter == "damping"
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
@@ -125,7 +125,7 @@ class Absorber(Effect):
         return State(absorbers=tuple(Hung(row, mass, mass * omega**2, damping) for row in rows))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the place; where no shapes tell it from its mirror images, these too."""
+        """Return the place; where no shapes separate it from its mirror images, these too."""
         at = (*place(values)[:2], float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
 
@@ -159,7 +159,7 @@ def _places(predictor: Predictor) -> list[tuple[float, ...]]:
 
 
 def _signs(predictor: Predictor) -> list[tuple[float, float, FloatArray]]:
-    """Return what each unpaired mode tells of the absorber that makes it.
+    """Return what each unpaired mode determines of the absorber that makes it.
 
     An absorber of frequency f_a and mass m, where a mode f_n of modal mass one moves by phi, makes of it the two f_1
     and f_2: f_1 f_2 = f_n f_a, and f_1^2 + f_2^2 = f_n^2 + f_a^2 (1 + m phi^2) (Den Hartog, section 3.2).

@@ -1,9 +1,9 @@
 """The flexibility of the place at which something sits, as far as the reduced basis leaves it out.
 
-A basis of modes is too stiff where a force acts that none of its static answers knows (residual flexibility: MacNeal,
-Computers & Structures 1, 581, 1971): what sits there seems to move more modes than it does. With F the flexibility at
-the place on all degrees of freedom, and F_r on the basis, a spring k acts there with k / (1 + k (F - F_r)), and a body
-hangs on a spring of 1 / (F - F_r).
+A basis of modes is too stiff where a force acts that none of its static answers includes (residual flexibility:
+MacNeal, Computers & Structures 1, 581, 1971): what sits there seems to move more modes than it does. With F the
+flexibility at the place on all degrees of freedom, and F_r on the basis, a spring k acts there with k / (1 + k (F -
+F_r)), and a body hangs on a spring of 1 / (F - F_r).
 """
 
 from __future__ import annotations

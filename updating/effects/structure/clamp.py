@@ -24,8 +24,8 @@ from updating.models.yielding import Yielding
 from updating.prediction.predict import Predictor
 
 NOT_HELD = (
-    "the node table lists no node that a support holds, with empty rows, or the matrices have rows at no place: what "
-    "the supports would do if they gave way is not known"
+    "the node table lists no node that a support holds, with empty rows, or the matrices have rows at "
+    "no place: the motion that the supports prevent is unknown"
 )
 """Why supports of imported matrices cannot give way."""
 
@@ -80,7 +80,7 @@ class Clamp(Effect):
         return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
     def repeats_on(self, predictor: Predictor) -> bool:
-        """Tell that two feet may give way, or one foot in two directions; the clamps of a beam are one form each."""
+        """State that two feet may give way, or one foot in two directions; the clamps of a beam are one form each."""
         return predictor.spec.imported is not None
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
@@ -177,7 +177,9 @@ def _released_edges(predictor: Predictor, values: Values) -> tuple[tuple[str, ..
     if named == ALL:
         return clamped, ()
     if named not in clamped:
-        raise StudyError(f"support = {named!r} is no clamped edge; those are {', '.join(clamped) or 'none'}")
+        raise StudyError(
+            f"support = {named!r} is not a clamped edge; those are {', '.join(clamped) or 'none'}"
+        )
     return (named,), tuple(edge for edge in clamped if edge != named)
 
 
@@ -196,7 +198,7 @@ class ClampRotation(Clamp):
     power = 1
     units = ("N m/rad", "N m/rad per m")
     span = (1.0, 2000.0)
-    why = "from nearly a hinge to 2000 times the structure's own E I / L, where nothing can see it"
+    why = "from nearly a hinge to 2000 times the structure's own E I / L, where it is undetectable"
 
 
 class ClampTranslation(Clamp):
@@ -212,7 +214,10 @@ class ClampTranslation(Clamp):
     power = 3
     units = ("N/m", "N/m per m")
     span = (5.0, 1e7)
-    why = "from nearly as soft as the structure, 5 E I / L^3, to ten million E I / L^3, where nothing can see it"
+    why = (
+        "from nearly as soft as the structure, 5 E I / L^3, to ten million E I / L^3, where it is "
+        "undetectable"
+    )
 
 
 def unit_edges(

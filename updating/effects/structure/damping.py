@@ -20,7 +20,7 @@ RATIOS = (5e-5, 0.1)
 """Range of the damping ratio that beta and the loss factor add at the middle of the measured band [-]."""
 
 DECAYS = (0.1, 70.0)
-"""Range of the decay rate that alpha adds: that of an exponential window, which no data tell from it [1/s]."""
+"""Range of the decay rate that alpha adds: that of an exponential window, which no data separate from it [1/s]."""
 
 
 NAMES = ("alpha", "beta", "loss_factor")
@@ -58,7 +58,7 @@ class UniformDamping(Effect):
     separated_by = "a repeat without window, on softer suspension, or in vacuum"
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that it does nothing else."""
+        """State that it does nothing else."""
         return True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:

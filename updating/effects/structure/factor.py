@@ -99,7 +99,8 @@ class SectionScale(FactorEffect):
         if predictor.measured.absolute:
             return None
         return Obstacle(
-            Lack.DATA, "it changes levels alone, and the data have none: FRFs or mass-normalised shapes would"
+            Lack.DATA,
+            "it changes only levels, and these data have no level; FRFs or mass-normalised shapes have one",
         )
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:

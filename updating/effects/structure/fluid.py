@@ -17,7 +17,7 @@ from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
 WATER = 998.0
-"""Density of the fluid where neither the study nor an accepted effect says it [kg/m^3]."""
+"""Density of the fluid where neither the study nor an accepted effect states it [kg/m^3]."""
 
 TYPICAL = 4
 """So many of the model's modes stand for those of a test that has not been made."""
@@ -55,14 +55,14 @@ class FluidAddedMass(Effect):
     undone_by = frozenset({"in air"})
     fidelity = 0.06
     damping_doubt = 0.5
-    """A fluid damps, and how much nothing here says: in water Stokes' layer alone adds 0.03 to 0.3 % to the ratios
+    """A fluid damps, by an amount that is not known here: in water Stokes' layer alone adds 0.03 to 0.3 % to the ratios
     of paper A's structures, a tenth to all of what light steel has dry; eddies and waves come on top."""
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the density of the fluid, and the distances of surface and bottom that the study does not state."""
         stated = predictor.environment.fluid_density
         low, high = (0.97 * stated, 1.03 * stated) if stated is not None else LIQUIDS
-        why = "liquids from pentane over oils, alcohols and water to brines; gases shift nothing that can be seen"
+        why = "liquids from pentane over oils, alcohols and water to brines; gases cause no detectable shift"
         why = why if stated is None else "the study states it"
         density = Parameter("fluid_density", "kg/m^3", low, high, why, log=stated is None)
         return (density, *(_distance(predictor, name) for name in unstated(predictor.environment)))
@@ -85,7 +85,7 @@ class FluidAddedMass(Effect):
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the fluid's share in the first mode's mass over the structure's own: what frequencies determine.
 
-        A denser fluid under a nearer surface adds as much; of a slender beam no mode tells the two apart.
+        A denser fluid under a nearer surface adds as much; on a slender beam no mode separates the two.
         """
         first = predictor.once("first mode", lambda: _first_mode(predictor))
         added = unit_mass(predictor, surroundings(predictor, values))[: len(first), : len(first)]

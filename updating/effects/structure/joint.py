@@ -65,7 +65,7 @@ class Joint(Effect):
             "spans of joints", lambda: _spans(predictor)
         ).tolist()
         held = "from a bolt that fell out to a joint that holds as if welded"
-        lossy = "from hardly anything to be seen to a dashpot that all but holds the lowest mode"
+        lossy = "from hardly detectable to a dashpot that all but holds the lowest mode"
         least, most = (share * total_mass(predictor.spec) * lowest(predictor) for share in LOSSY)
         return (
             Parameter("stiffness", "N/m", low, high, held, log=True, like="nothing", or_none=True),
@@ -142,7 +142,7 @@ class Joint(Effect):
         return State(stiffness=tuple(changes), losses=(Loss(damping * units[0]),) if damping else ())
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that the dashpot does, and nothing else."""
+        """State that the dashpot does, and nothing else."""
         return parameter == "damping"
 
     def sentence(self, values: Values) -> str:

@@ -29,7 +29,7 @@ COMMON_LEVEL = 100.0
 
 
 ANYWHERE, TURNING, SHIFTING, STRETCHING = 0, 1, 2, 3
-"""Which joint: one that nobody knows, a clamp in rotation or in translation, or two clamps that hold an end each."""
+"""Which joint: an unknown one, a clamp in rotation or in translation, or two clamps that hold an end each."""
 
 FREED: Mapping[int, Literal["rotation", "translation"]] = MappingProxyType(
     {TURNING: "rotation", SHIFTING: "translation"}
@@ -53,11 +53,11 @@ TIGHT = 0.01
 """Tension that moves frequencies in proportion, over the load that buckles the model [-]."""
 
 UNNAMED = 0.25
-"""Prior of a joint that nobody knows, beside those that node sets name [-]: as beside clamps. Judged; doubled, the
+"""Prior of an unknown joint, beside those that node sets name [-]: as beside clamps. Judged; doubled, the
 named ones lose ln 1.5."""
 
 SPREAD, OWN = 0.15, 0.05
-"""How far modes differ in a joint that nobody knows, and in one whose strain energy is computed, relative [-]."""
+"""How far modes differ in an unknown joint, and in one whose strain energy is computed, relative [-]."""
 
 
 class JointNonlinearity(Effect):
@@ -67,7 +67,7 @@ class JointNonlinearity(Effect):
     stiffens closes under the force, to which its stiffness is proportional. Between two clamps whose ends cannot
     approach each other a tension grows with the force. A joint of imported matrices, between two node sets, does either
     from the stiffness that it has there. Each mode's slope then follows from the joint's share of its
-    own strain energy, d ln f / dF = phi^T (dK/dF) phi / 2 lambda. In a joint that nobody knows all slopes are alike.
+    own strain energy, d ln f / dF = phi^T (dK/dF) phi / 2 lambda. In an unknown joint all slopes are alike.
 
     ``slope`` is the mean over all modes up to the highest measured one, in proportion to the force from a clamp that
     gives way by some per cent of frequency, or from a joint as modelled: a mode that a test misses in between changes
@@ -121,7 +121,7 @@ class JointNonlinearity(Effect):
         test = predictor.measured
         if test.slope is not None and test.level and np.isfinite(test.slope).any():
             return None
-        what = "no points were hit several times with levels that span 2 : 1, or there are no raw hits"
+        what = "this needs raw hits with force levels that span 2 : 1 at some points"
         return Obstacle(Lack.DATA, what)
 
     def fidelity_on(self, predictor: Predictor) -> float:

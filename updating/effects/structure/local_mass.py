@@ -41,7 +41,7 @@ HEAVIER, LIGHTER = (0.5, 1.0), (0.0, 0.5)
 """The two forms, each half of the quantiles of the factor, nothing in the middle."""
 
 LARGE = 0.65
-"""Quantile, within a form, of the size from which a search starts where frequencies do not say which [-]."""
+"""Quantile, within a form, of the size from which a search starts where frequencies do not decide [-]."""
 
 SCREENED = (0.05, 0.4, 0.75)
 """Quantiles of the extents at which places are screened [-]. What is long is found from what is short, what is short
@@ -159,7 +159,7 @@ class LocalMass(Effect):
         return float((values["factor"] - 1) * sum(along @ (part @ along) for part in parts))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the middle; where no shapes tell it from its mirror images, these too."""
+        """Return the middle; where no shapes separate it from its mirror images, these too."""
         if predictor.spec.kind == "matrices":
             return (region_centre(predictor, values),)
         at = place(values)

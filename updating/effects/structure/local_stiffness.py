@@ -157,7 +157,7 @@ class LocalStiffness(Effect):
         return np.asarray(values["loss"] * shares(predictor, values, soft=SOFT))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the place; where no shapes tell it from its mirror images, these too."""
+        """Return the place; where no shapes separate it from its mirror images, these too."""
         if predictor.spec.kind == "matrices":
             return (region_centre(predictor, values),)
         at = place(values)

@@ -51,10 +51,10 @@ SHARES = {"anywhere": 0.5, "ends": 0.25, "points": 0.25}
 or where a test has its points, whose places are marked and were thought of; each half of the rest [-]."""
 
 PROMISING = 3
-"""At how many of the test's points a body is weighed: those at which one comes nearest to the frequencies."""
+"""At how many of the test's points a body is tried: those at which one comes nearest to the frequencies."""
 
 STILL, CUBE = 0.0, 1.0
-"""Rotary inertia of a sensor and of a body where none is told, as a multiple of a steel cube's [-]."""
+"""Rotary inertia of a sensor and of a body where none is stated, as a multiple of a steel cube's [-]."""
 
 SIZES = 9
 """So many masses at a place of imported matrices are starts, three in a decade: the search begins at the best of them,
@@ -84,7 +84,7 @@ def unit_inertia(structure: Structure, points: FloatArray) -> Sparse:
 
 @dataclass(frozen=True)
 class Astray(Parameter):
-    """A distance from a stated place: normal about zero, cut off where nobody believes it any more.
+    """A distance from a stated place: normal about zero, cut off where it is no longer plausible.
 
     The range is `FARTHEST` standard deviations to either side.
     """
@@ -167,10 +167,12 @@ class SensorMass(Effect):
         return float(values["mass"])
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
-        """Need to know where the sensors sit."""
+        """Require the places of the sensors."""
         if len(sensor_places(predictor)):
             return None
-        return Obstacle(Lack.DATA, "the data do not say where a sensor sits; a [[model.mass]] of 0 kg would")
+        return Obstacle(
+            Lack.DATA, "the data do not state where a sensor is mounted; a [[model.mass]] of 0 kg would"
+        )
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the mass at every sensor, or spread over the places of one that roves."""
@@ -212,7 +214,7 @@ class LumpedMass(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the mass and its place."""
         high = 0.5 * total_mass(predictor.spec)
-        why = "from what repeated tests can see to half the structure's own mass"
+        why = "from the smallest mass that repeated tests detect to half the structure's own mass"
         places = outline(predictor)
         return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places, _bulk(CUBE))
 
@@ -284,7 +286,7 @@ class LumpedMass(Effect):
         return State(mass=(_body(predictor, point, values["mass"], inertia),))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the place; where no shapes tell it from its mirror images, these too."""
+        """Return the place; where no shapes separate it from its mirror images, these too."""
         if predictor.spec.imported is not None and "at" in values:
             return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
@@ -349,7 +351,7 @@ def promising_points(predictor: Predictor) -> FloatArray:
 
 
 def _vacant(predictor: Predictor, place: FloatArray) -> bool:
-    """Tell whether no sensor stays at a place (dim,)."""
+    """Return whether no sensor stays at a place (dim,)."""
     away = np.linalg.norm(sensor_places(predictor) - place, axis=1)
     return sensor_roves(predictor) or bool((away > LIKE * predictor.spec.length).all())
 
@@ -370,7 +372,7 @@ def _reduced_inertia(predictor: Predictor, points: FloatArray) -> FloatArray:
 
 
 def sensor_roves(predictor: Predictor) -> bool:
-    """Tell whether one sensor was moved from point to point while the hammer stayed."""
+    """Return whether one sensor was moved from point to point while the hammer stayed."""
     test = predictor.measured
     return len(test.sensors) > 3 and len(set(test.hit.tolist())) == 1
 

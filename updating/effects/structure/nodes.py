@@ -10,7 +10,7 @@ from updating.models.imported.groups import Group
 from updating.models.imported.matrices import Imported
 
 NAMED_SHARE = 0.5
-"""Prior share of the places that somebody thought of, test points and node sets, the rest that of all other nodes [-]:
+"""Prior share of the places that a user named, test points and node sets, the rest that of all other nodes [-]:
 judged. Doubled, nothing sits between them."""
 
 SAME = 1e-6

@@ -26,7 +26,7 @@ COUPLING = frozenset({("wxx", "wyy"), ("rxx", "ryy")})
 """Terms that grow with Poisson's ratio, the geometric mean of that along and that across."""
 
 HUBER = 1.0
-"""Shear modulus and coupling where none is told, over those of Huber [-]."""
+"""Shear modulus and coupling where none is stated, over those of Huber [-]."""
 
 STARTS_ALONG = 12
 """Starts of the search along the ratio, a factor of 1.7 apart: at twice that modes change places in between."""

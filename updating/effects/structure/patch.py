@@ -91,7 +91,7 @@ class DampingPatch(Effect):
         return damping_obstacle(predictor)
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that what loses does, and nothing else."""
+        """State that what loses does, and nothing else."""
         return parameter in LAWS
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
@@ -157,7 +157,7 @@ class DampingPatch(Effect):
         return stiffness, covered(predictor, "mass", inside) if mass else stiffness
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the place, and its mirror images where nothing but damping could tell them apart."""
+        """Return the place, and its mirror images where nothing but damping could separate them."""
         if predictor.spec.kind == "matrices":
             return (region_centre(predictor, values),)
         at, stated = place(values), predictor.measured.has_shapes and (values["mass"] or values["stiffness"])

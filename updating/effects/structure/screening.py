@@ -30,14 +30,14 @@ between the places is missed less; at eight times, twice, twice the time."""
 
 TRIED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 """Quantiles of the prior of a size, from end to end, at which frequencies are predicted before the best is refined [-].
-Doubled: at twice the time, two sizes that fit by chance are told apart."""
+Doubled: at twice the time, two sizes that fit by chance are distinguished."""
 
 CLOSE = 0.02
 """A size refined so far is near enough, relative [-]: what is left of a gap of 10 % is then some 0.1 % in error, less
 than neighbouring nodes differ by. Doubled, one prediction of ten is saved."""
 
 PROMISING = 6
-"""So many of these are weighed by all data. Doubled: at twice the time, neighbours further off are among them."""
+"""So many of these are compared by all data. Doubled: at twice the time, neighbours further off are among them."""
 
 
 def promising_nodes(

@@ -84,10 +84,10 @@ class GroundSpring(Effect):
         """Return place, extent, stiffness and damping."""
         spec = predictor.spec
         low, high = (share * own_stiffness(predictor) for share in STIFFNESS)
-        held = "from what repeated tests can see of a soft cable to a stop"
+        held = "from the softest cable that repeated tests detect to a stop"
         why = "a point is a form of its own; what is longer goes to the whole structure"
         size = max(spec.length, spec.width) if spec.kind == "plate" else spec.length
-        lossy = "from hardly anything to be seen to a dashpot that all but holds the lowest mode"
+        lossy = "from hardly detectable to a dashpot that all but holds the lowest mode"
         extent = SHORTEST * spec.length, size
         least, most = (share * total_mass(spec) * lowest(predictor) for share in LOSSY)
         return (
@@ -106,7 +106,7 @@ class GroundSpring(Effect):
         return Obstacle(Lack.DATA, what)
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that the dashpots do, and nothing else."""
+        """State that the dashpots do, and nothing else."""
         return parameter == "damping"
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
@@ -181,7 +181,7 @@ class GroundSpring(Effect):
         )
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the middle; where no shapes tell it from its mirror images, these too."""
+        """Return the middle; where no shapes separate it from its mirror images, these too."""
         if "at" in values:
             assert predictor.spec.imported is not None
             return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)

@@ -21,7 +21,7 @@ from updating.prediction.predict import Predictor
 
 BOUNCE = (0.03, 0.7)
 """Range of the frequency at which the whole bounces on its cords, over the first elastic one: at the lower end it
-shifts that by some 0.1 %, at the upper one nobody takes the specimen to be free [-]."""
+shifts that by some 0.1 %, at the upper one the specimen is no longer taken to be free [-]."""
 
 FARTHEST_IN = 0.35
 """How far from the edges the outer cords are at most, of the side: beyond the nodes of the first mode, 0.224 [-]."""
@@ -31,7 +31,7 @@ CORDS = {"beam": ((2, 0.6), (3, 0.15), (4, 0.25)), "plate": ((4, 0.5), (2, 0.3),
 
 NAMED_SHARE = 0.6
 """Prior share of the cords that node sets name, the rest that of ends and corners of a structure given by matrices [-]:
-judged. Doubled, cords are where somebody said alone."""
+judged. Doubled, cords are only where they are stated."""
 
 EVERY_WAY = 0.3
 """Prior share of what holds alike in all directions, foam or rubber, as against cords, which hold along themselves [-]:
@@ -42,8 +42,8 @@ CORNERS = ((0, 0), (1, 1), (0, 1), (1, 0))
 
 
 HELD = (
-    "the model does not move freely: it is held, or has its cords in it; give it without them, or state them as a "
-    "region or a hypothesis; ground_spring holds it beside supports"
+    "the model does not move freely: it is held, or has its cords in it; give it without them, or "
+    "state them as a region or a hypothesis; a ground_spring is used beside supports"
 )
 """Why a model that has no rigid-body mode hangs on no cords that are missing in it."""
 
@@ -79,7 +79,7 @@ class Suspension(Effect):
         low, high = (_cord(predictor, share, n) for share, n in zip(BOUNCE, counts, strict=True))
         least, most = (share * mass * first / n for share, n in zip(LOSSY, counts, strict=True))
         held = f"from a bounce at {BOUNCE[0]:g} of the first elastic frequency to one at {BOUNCE[1]:g}"
-        lossy = "from hardly anything to be seen to cords on which nothing bounces twice"
+        lossy = "from hardly detectable to cords on which nothing bounces twice"
         sizes = (
             Parameter("stiffness", "N/m", low, high, held, log=True),
             Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
@@ -104,7 +104,8 @@ class Suspension(Effect):
         if not predictor.spec.clamped:
             return None
         return Obstacle(
-            Lack.MODEL, "the model is clamped: it hangs on no cords; ground_spring holds it beside clamps"
+            Lack.MODEL,
+            "the model is clamped: it does not hang on cords; a ground_spring is used beside clamps",
         )
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:

@@ -132,7 +132,7 @@ class Wetted:
 
 
 def _domain(spec: Spec, around: Environment) -> FluidDomain:
-    """Return what bounds the fluid. Where no walls are told, the one clamped edge stands at a wall of its own.
+    """Return what bounds the fluid. Where no walls are stated, the one clamped edge stands at a wall of its own.
 
     A clamp is a body through which nothing flows. Of several clamped edges nothing of the kind is assumed.
     """

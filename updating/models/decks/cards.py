@@ -98,7 +98,7 @@ def read_cards(path: Path) -> Cards:
     Raises
     ------
     StudyError
-        If a file cannot be read, the first line is no card, or a card is not followed.
+        If a file cannot be read, the first line is not a card, or a card is not followed.
     """
     found, head, lines, where = list[Card](), "", list[str](), ""
     for line, here in deck_lines(path):

@@ -66,7 +66,7 @@ class Section:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """What a deck says of elements.
+    """What a deck states about elements.
 
     Parameters
     ----------
@@ -211,7 +211,9 @@ def _members(one: Card, sets: dict[str, list[int]]) -> Iterable[int]:
     for row in one.rows():
         if "GENERATE" in one.options:
             if not (2 <= len(row) <= 3 and all(word.isdecimal() for word in row)):
-                raise StudyError(f"{one.where}: {', '.join(row)[:60]!r} is no first, last and step")
+                raise StudyError(
+                    f"{one.where}: {', '.join(row)[:60]!r} is not a range of first, last and step"
+                )
             first, last, step = (*(int(word) for word in row), 1)[:3]
             found += range(first, last + 1, max(step, 1))
             continue

@@ -170,8 +170,8 @@ def _check_nodes(model: DeckModel) -> None:
     for element, (_, nodes) in model.mesh.elements.items():
         if missing := [node for node in nodes if node not in known]:
             raise StudyError(
-                f"{model.path}: element {element} has node {missing[0]}, which stands in no *NODE card; add it or "
-                "correct its number"
+                f"{model.path}: element {element} has node {missing[0]}, which is in no *NODE card; add it "
+                "or correct its number"
             )
 
 

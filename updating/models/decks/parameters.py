@@ -100,7 +100,7 @@ def parameter_of(
     Parameters
     ----------
     mesh, deck : Mesh, Deck
-        What the deck says of elements and of nodes.
+        Elements and nodes of the deck.
     name : str
         ``SET.thickness`` of shells, ``SET.thickness_1``, ``SET.thickness_2`` of rectangular beams,
         ``SET.stiffness`` of springs, ``SET.mass`` of point masses, ``NODESET.x`` (y, z).
@@ -256,7 +256,7 @@ def _touching(mesh: Mesh, nodes: frozenset[int]) -> frozenset[int]:
 
 
 def _has_shape(kind: str) -> bool:
-    """Tell whether the matrices of a type of element depend on where its nodes are."""
+    """Return whether the matrices of a type of element depend on where its nodes are."""
     return bool(family_of(kind)) or kind == "SPRINGA"
 
 

@@ -48,7 +48,7 @@ class Stored:
     direction: IntArray
 
     def same_rows(self, other: Stored) -> bool:
-        """Tell whether the rows of two decks are the same."""
+        """Return whether the rows of two decks are the same."""
         return np.array_equal(self.node, other.node) and np.array_equal(self.direction, other.direction)
 
 
@@ -131,10 +131,10 @@ def run(path: str, text: str, source: str) -> Stored:
 
 
 def _complaint(output: str) -> str:
-    """Return what CalculiX says of an error, in one line."""
+    """Return CalculiX's error message, in one line."""
     found = re.search(r"\*ERROR[^\n]*(?:\n(?!\s*\n|\s*\*)[^\n]*){0,3}", output)
     statement = found.group() if found else " ".join(output.split()[-30:])
-    return " ".join(statement.split())[:300] or "it stopped without a word"
+    return " ".join(statement.split())[:300] or "it stopped without a message"
 
 
 def _of_order(matrix: Sparse, order: int, source: str) -> Sparse:

@@ -87,7 +87,7 @@ def cells_of(cards: Cards, mesh: Mesh, elements: frozenset[int], change: Callabl
     Parameters
     ----------
     cards : Cards
-        The deck, whose sections hold the elements that ``mesh`` says.
+        The deck, whose sections hold the elements that ``mesh`` states.
     mesh : Mesh
         The deck as it was read.
     elements : frozenset of int
@@ -118,7 +118,7 @@ def _elements_of(name: str, cards: Cards, mesh: Mesh) -> frozenset[int]:
 
 
 def divide(mesh: Mesh, stated: Sequence[tuple[str, str]]) -> Division:
-    """Divide a deck as a study says, and what the study leaves out by its sections.
+    """Divide a deck as a study states, and what the study leaves out by its sections.
 
     Parameters
     ----------

@@ -138,7 +138,7 @@ def _diagonals(arrays: Arrays, data: AnyArray, shape: tuple[int, int]) -> sparse
         raise ValueError(f"diagonals of shape {data.shape} in {shape[0]} x {shape[1]}")
     offsets = _whole(arrays["offsets"], len(data))
     if len(np.unique(offsets)) < len(offsets) or (offsets <= -shape[0]).any() or (offsets >= shape[1]).any():
-        raise ValueError("a diagonal that stands twice or outside")
+        raise ValueError("a diagonal that is given twice or outside")
     return sparse.dia_array((data, offsets), shape)
 
 

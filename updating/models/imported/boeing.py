@@ -95,7 +95,7 @@ def _whole(field: bytes) -> int:
 
 
 def _numbers(cards: list[bytes], block: _Block) -> AnyArray:
-    """Return the numbers on cards, each card with as many as its format says."""
+    """Return the numbers on cards, each card with as many as its format states."""
     found = _FORMAT.fullmatch(block.layout)
     if found is None:
         raise ValueError(f"format {block.layout[:40]!r}")

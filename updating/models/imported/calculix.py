@@ -24,14 +24,14 @@ def read_triplets(path: Path) -> Sparse:
     """
     row, column, value = columns_of(_plain(path.read_bytes()), "iif", path)
     if not len(value):
-        raise StudyError(f"{path}: is empty; did ccx stop early? its .sta and .dat files tell")
+        raise StudyError(f"{path}: is empty; did ccx stop early? see its .sta and .dat files")
     if min(row.min(), column.min()) < 1:
         raise StudyError(f"{path}: row or column 0 or below; CalculiX counts from 1")
     order = int(max(row.max(), column.max()))
     check_order(order, len(value), path)
     matrix = Sparse(sparse.coo_array((value, (row - 1, column - 1)), (order, order)).tocsr())
     if matrix.nnz < len(value):
-        raise StudyError(f"{path}: {len(value) - matrix.nnz} entries stand twice; run ccx anew")
+        raise StudyError(f"{path}: {len(value) - matrix.nnz} entries are given twice; run ccx anew")
     one_triangle = bool((row <= column).all() or (row >= column).all())
     return Sparse(matrix + matrix.T - sparse.diags_array(matrix.diagonal())) if one_triangle else matrix
 

@@ -1,4 +1,4 @@
-"""Whether two matrices can be the stiffness and the mass of one structure; if not, which row says so."""
+"""Whether two matrices can be the stiffness and the mass of one structure; if not, which row shows it."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def check_mass(mass: Sparse, source: str, places: FloatArray | None = None) -> N
     """See that a mass matrix with a positive diagonal has no negative eigenvalue.
 
     Zero is allowed: elements with reduced integration have motions without mass, which their stiffness holds.
-    ``places`` (n, 3) says where the rows are [m].
+    ``places`` (n, 3) states where the rows are [m].
 
     Raises
     ------

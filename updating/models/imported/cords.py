@@ -25,7 +25,7 @@ NUMBERED = re.compile(r"(.+?)[_\-. ]*\d+")
 """A name and its number: ``cord_1`` and ``cord_2`` are a suspension of two; a number alone names nothing."""
 
 ENDS, CORNERS = "ends", "corners"
-"""What a suspension is called that nobody named: at both ends, or at the four corners."""
+"""Name of a suspension without a name of its own: at both ends, or at the four corners."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +35,13 @@ class Cords:
     Parameters
     ----------
     name : str
-        Of the node set, or what the names of several have in common; ``ends`` or ``corners`` where nobody named it.
+        Of the node set, or what the names of several have in common; ``ends`` or ``corners`` where it has no name.
     places : (n, 3) array
         Where its cords are [m].
     rows : tuple of 3 sparse arrays, each (n, n_dofs)
         Motion of each along x, y and z; empty where the matrices do not have it.
     named : bool
-        Whether somebody named it.
+        Whether it has a name of its own.
     """
 
     name: str
@@ -50,15 +50,15 @@ class Cords:
     named: bool
 
     def moves(self, axis: int) -> bool:
-        """Tell whether each of its places can move along an axis 0, 1, 2."""
+        """Return whether each of its places can move along an axis 0, 1, 2."""
         return bool((np.diff(self.rows[axis].indptr) > 0).all())
 
 
 def cords_of(places: Places, sets: NodeSets, groups: Sequence[Group]) -> tuple[Cords, ...]:
     """Return the suspensions that a structure may have.
 
-    They are node sets of several places, places whose names differ in a number alone, and, where nobody named them, the
-    ends and the corners.
+    They are node sets of several places, places whose names differ in a number alone, and, where they have no names,
+    the ends and the corners.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ DIRECTIONS = range(1, 12)
 
 @dataclass(frozen=True, eq=False)
 class Deck:
-    """What a deck says of nodes.
+    """What a deck states about nodes.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Deck:
         """Yield the nodes among them; as many steps as there are nodes or numbers, whichever are fewer."""
         for numbers in self.ranges(name, where):
             if len(numbers) == 1 and numbers[0] not in self.nodes:
-                raise StudyError(f"{where}: node {numbers[0]} stands in no *NODE card before")
+                raise StudyError(f"{where}: node {numbers[0]} is in no *NODE card before")
             few, many = (
                 (numbers, self.nodes) if len(numbers) < len(self.nodes) else (self.nodes.keys(), numbers)
             )
@@ -108,7 +108,7 @@ def read_deck(path: Path) -> Deck:
         if card == "*END STEP":
             raise StudyError(f"{where}: {line[:40]!r} stands behind the end of a step, without a card")
         filled = True
-        if card in ("*BOUNDARY", "*TRANSFORM"):  # a line said twice holds nothing more
+        if card in ("*BOUNDARY", "*TRANSFORM"):  # a line stated twice holds nothing more
             if (once := (card, options.get("NSET", ""), line.upper())) in seen:
                 continue
             seen.add(once)
@@ -152,7 +152,7 @@ def _check_filled(card: str, options: dict[str, str], filled: bool, where: str) 
 
 
 def _step(card: str, where: str, *, in_step: bool) -> bool:
-    """Tell whether a step is open behind a card, and refuse the end of one that never began."""
+    """Return whether a step is open behind a card, and refuse the end of one that never began."""
     if card == "*END STEP" and not in_step:
         raise StudyError(
             f"{where}: {card} without a *STEP before it; the deck is damaged, lines of it are lost"
@@ -163,7 +163,7 @@ def _step(card: str, where: str, *, in_step: bool) -> bool:
 def _check_card(card: str, options: dict[str, str], line: str, where: str) -> None:
     """Refuse what is not followed, and a card whose name is a slip of the pen away from one that is."""
     if not _NAME.fullmatch(card) or any(option.isdecimal() for option in options):
-        raise StudyError(f"{where}: {line[:40]!r} is no card; the file is damaged or cut short")
+        raise StudyError(f"{where}: {line[:40]!r} is not a card; the file is damaged or cut short")
     if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
         raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
     for word, known in ((card, FOLLOWED), *((option, OPTIONS) for option in options)):
@@ -172,7 +172,7 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
             plain, known, n=1, cutoff=0.75
         )
         if plain and close and word not in known and plain.replace(" ", "") not in ALIKE:
-            raise StudyError(f"{where}: {plain} is nothing known; is {close[0]} meant?")
+            raise StudyError(f"{where}: {plain} is unknown; is {close[0]} meant?")
     strange = [option for option in options if option and option not in KNOWN_OPTIONS.get(card, options)]
     if strange:
         raise StudyError(
@@ -185,7 +185,7 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
 
 
 def _lost_a_piece(word: str, whole: str) -> bool:
-    """Tell whether a word is another without one piece of it."""
+    """Return whether a word is another without one piece of it."""
     lost = len(whole) - len(word)
     return lost > 0 and any(word == whole[:i] + whole[i + lost :] for i in range(1, len(word) + 1))
 
@@ -195,7 +195,7 @@ def _place(deck: Deck, line: str, where: str) -> int:
     word, *place = (part.strip() for part in line.rstrip(", ").split(","))
     right = word.isdecimal() and len(word) < 19 and 1 <= len(place) <= 3
     if not right or not all(NUMBER.fullmatch(p) for p in place):
-        raise StudyError(f"{where}: {line[:80]!r} is no node, number and x, y, z")
+        raise StudyError(f"{where}: {line[:80]!r} is not a node line (number, x, y, z)")
     number, found = int(word), [float(p.upper().replace("D", "E")) for p in place]
     coordinates = np.array([*found, 0.0, 0.0][:3])
     if number in deck.nodes and not np.array_equal(deck.nodes[number], coordinates):
@@ -209,7 +209,7 @@ def _listed(line: str, options: dict[str, str], deck: Deck, where: str) -> Itera
     if "GENERATE" not in options:
         return [numbers for part in parts if part for numbers in deck.ranges(part, where)]
     if not 2 <= len(parts) <= 3 or not all(part.isdecimal() and len(part) < 19 for part in parts):
-        raise StudyError(f"{where}: {line[:80]!r} is no first, last and step")
+        raise StudyError(f"{where}: {line[:80]!r} is not a range of first, last and step")
     first, last, step = (*(int(part) for part in parts), 1)[:3]
     if first > last or not step:
         raise StudyError(f"{where}: {line[:80]!r} runs from {first} to {last} by {step}; no node is in it")
@@ -221,7 +221,7 @@ def _held(line: str, deck: Deck, where: str) -> Iterator[tuple[int, int]]:
     ends = numbers[:1] + [number for number in numbers[1:2] if number or len(numbers) == 2]
     if not ends or not all(end.isdecimal() and len(end) < 3 and int(end) in DIRECTIONS for end in ends):
         raise StudyError(
-            f"{where}: {line[:80]!r} is no node or set with its first and last direction, 1 to 6"
+            f"{where}: {line[:80]!r} is not a node or set with its first and last direction, 1 to 6"
         )
     if [
         value for value in numbers[2:] if value and not re.fullmatch(r"[+-]?0*\.?0*([EeDd][+-]?\d+)?", value)

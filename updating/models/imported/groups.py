@@ -55,7 +55,7 @@ class Group:
     rows: tuple[Sparse, ...]
 
     def moves(self, axis: int) -> bool:
-        """Tell whether it can move along an axis 0, 1, 2, or turn about it, 3, 4, 5."""
+        """Return whether it can move along an axis 0, 1, 2, or turn about it, 3, 4, 5."""
         return bool(self.rows[axis].nnz)
 
     def motions(self, axes: Sequence[int]) -> Sparse:
@@ -221,7 +221,7 @@ class Support:
     carried_by: FloatArray
 
     def holds(self, axis: int) -> bool:
-        """Tell whether the structure resists its shift along an axis 0, 1, 2, or its turn about it, 3, 4, 5."""
+        """Return whether the structure resists its shift along an axis 0, 1, 2, or its turn about it, 3, 4, 5."""
         alike = np.diag(self.own)[:3] if axis < 3 else np.diag(self.own)[3:]
         return bool(self.own[axis, axis] > FELT * alike.max())
 

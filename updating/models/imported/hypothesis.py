@@ -106,7 +106,7 @@ def change_of(own: Sparse, other: Sparse, what: str) -> Sparse:
 
 
 def same_as(own: Sparse, other: Sparse) -> bool:
-    """Tell whether another matrix is the model's own, but for the digits of its file."""
+    """Return whether another matrix is the model's own, but for the digits of its file."""
     return own.shape == other.shape and not _change(own, other).nnz
 
 

@@ -30,7 +30,7 @@ class _Work:
         except OSError as error:
             raise StudyError(f"{where}{path}: cannot be read ({error.strerror})") from error
         except ValueError as error:
-            raise StudyError(f"{where}{str(path)[:80]!r} is no file name; correct the *INCLUDE") from error
+            raise StudyError(f"{where}{str(path)[:80]!r} is not a file name; correct the *INCLUDE") from error
         self.sizes[path.resolve()] = len(text)
         self.done += len(text)
         if self.done > OVER * sum(self.sizes.values()):
@@ -39,7 +39,7 @@ class _Work:
 
 
 def is_include(line: str) -> bool:
-    """Tell whether a line stands for the text of a file."""
+    """Return whether a line stands for the text of a file."""
     return line.split(",", maxsplit=1)[0].rstrip().upper() == "*INCLUDE"
 
 

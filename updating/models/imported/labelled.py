@@ -74,7 +74,7 @@ class Labelled:
 
 
 def is_labelled(path: Path) -> bool:
-    """Tell whether a file is of this kind: by its ending, or a first line of five numbers between commas."""
+    """Return whether a file is of this kind: by its ending, or a first line of five numbers between commas."""
     if path.suffix.lower() in PUNCHED:
         return True
     if path.suffix.lower() != ".mtx" or not path.is_file():
@@ -121,13 +121,13 @@ def _of_abaqus(path: Path) -> Labelled:
 
 
 def _once(found: Labelled) -> Labelled:
-    """Refuse a matrix in which an entry stands twice."""
+    """Refuse a matrix in which an entry is given twice."""
     places, counts = np.unique(np.hstack([found.row, found.column]), axis=0, return_counts=True)
     if len(places) < len(found.value):
         node, direction, other, way = places[np.argmax(counts)].tolist()
         raise StudyError(
-            f"{found.source}: the entry of {node}.{direction} and {other}.{way} (node.direction) stands twice; write "
-            "the file anew"
+            f"{found.source}: the entry of {node}.{direction} and {other}.{way} (node.direction) is given "
+            "twice; write the file anew"
         )
     return found
 
@@ -210,7 +210,7 @@ def _entry(line: str, where: str) -> tuple[int, int, float]:
     node, direction = _whole(fields[:2], where)
     word = re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", fields[2].upper().replace("D", "E"))
     if not NUMBER.fullmatch(word) or not np.isfinite(float(word)):
-        raise StudyError(f"{where}: {fields[2]!r} is no number; punch the file anew")
+        raise StudyError(f"{where}: {fields[2]!r} is not a number; punch the file anew")
     return node, direction, float(word)
 
 

@@ -54,12 +54,12 @@ def _matrix(array: Array, path: Path) -> Sparse:
     places = {"indices": indices[: len(entries)], "indptr": pointers}
     found = compressed(places, entries, (rows, columns), by_row=False)
     if _twice(found):
-        raise ValueError("an entry that stands twice")
+        raise ValueError("an entry that is given twice")
     return Sparse(found.tocsr())
 
 
 def _twice(matrix: sparse.coo_array) -> bool:
-    """Tell whether an entry stands twice, as none does in a file of MATLAB: a sum would be a wrong number."""
+    """Return whether an entry is given twice, as none does in a file of MATLAB: a sum would be a wrong number."""
     place = np.asarray(matrix.row, dtype=np.int64) * matrix.shape[1] + matrix.col
     return len(np.unique(place)) < len(place)
 

@@ -1,4 +1,4 @@
-"""Stiffness and mass as somebody else's program wrote them, with what says where their rows are."""
+"""Stiffness and mass as another program wrote them, with the places of their rows."""
 
 from __future__ import annotations
 
@@ -240,7 +240,7 @@ class Imported:
     def obstacle(self, factor: str, *, regional: bool = False) -> str | None:
         """Return why a factor cannot be turned, or None."""
         if factor not in ("E", "density"):
-            return f"imported matrices know no {factor}; they scale with E and density"
+            return f"imported matrices have no {factor}; they scale with E and density"
         name, parts = {
             "E": ("stiffness_parts", self.stiffness_parts),
             "density": ("mass_parts", self.mass_parts),

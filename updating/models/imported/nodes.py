@@ -118,7 +118,7 @@ def read_table(path: Path, order: int) -> NodeTable:
     Raises
     ------
     StudyError
-        If a column is missing or unknown, a value is no number, or a row lies beyond the matrices.
+        If a column is missing or unknown, a value is not a number, or a row lies beyond the matrices.
     """
     values, names = _columns_of(path)
     rows = values["row"].to_numpy()
@@ -137,7 +137,7 @@ def read_table(path: Path, order: int) -> NodeTable:
         stated = values[column].to_numpy()
         if (broken := ~np.isnan(stated) & ((stated != np.round(stated)) | (np.abs(stated) > 2**53))).any():
             line = int(np.flatnonzero(broken)[0])
-            raise StudyError(f"{path}, entry {line + 1}: {column} {stated[line]:g} is no whole number")
+            raise StudyError(f"{path}, entry {line + 1}: {column} {stated[line]:g} is not a whole number")
     found = NodeTable(
         values["node"].to_numpy(dtype=np.int64),
         values[["x", "y", "z"]].to_numpy(),
@@ -172,14 +172,14 @@ def read_places(path: Path) -> Nodes:
     Raises
     ------
     StudyError
-        If a column is missing or unknown, or a value is no number.
+        If a column is missing or unknown, or a value is not a number.
     """
     if not path.is_file():
         raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
     values, names = _columns_of(path, COLUMNS[:4])
     stated = values["node"]
     if values.isna().to_numpy().any() or (stated != stated.round()).any() or (stated.abs() > 2**53).any():
-        raise StudyError(f"{path}: a node or a coordinate is missing or no number; give node, x, y, z")
+        raise StudyError(f"{path}: a node or a coordinate is missing or not a number; give node, x, y, z")
     node = values["node"].to_numpy(dtype=np.int64)
     at = dict(zip(node.tolist(), map(tuple, values[["x", "y", "z"]].to_numpy().tolist()), strict=True))
     return Nodes(at, sets_of_table(node, names))
@@ -222,7 +222,7 @@ def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFr
     table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
     if numbers := [c for c in table.columns if _is_number(c)]:
         raise StudyError(
-            f"{path}, line 1: {numbers[0]!r} is no name of a column; is the header's line end lost?"
+            f"{path}, line 1: {numbers[0]!r} is not a name of a column; is the header's line end lost?"
         )
     if missing := [c for c in columns if c not in table.columns]:
         raise StudyError(
@@ -236,7 +236,8 @@ def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFr
         if twice or (c not in known and not table[c].isna().to_numpy().all())
     ]:
         raise StudyError(
-            f"{path}: column {strange[0]!r} is none of {', '.join(known)}, or stands twice; rename it or take it out"
+            f"{path}: column {strange[0]!r} is not one of {', '.join(known)}, or is given twice; rename it "
+            "or take it out"
         )
     try:
         names = (
@@ -250,7 +251,7 @@ def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFr
 
 
 def _is_number(name: str) -> bool:
-    """Tell whether a heading is a number, which stands there where a line has run into the header's."""
+    """Return whether a heading is a number, which stands there where a line has run into the header's."""
     try:
         float(name)
     except ValueError:
@@ -290,7 +291,7 @@ def deck_table(deck: Deck, node: IntArray, direction: IntArray, source: str) -> 
     unknown = sorted({n for n in node.tolist() if n not in deck.nodes and n <= last})
     if unknown:
         raise StudyError(
-            f"{source}: node {unknown[0]} stands in no *NODE card, but has a row; give the deck that was run"
+            f"{source}: node {unknown[0]} is in no *NODE card, but has a row; give the deck that was run"
         )
     rows = [
         (n, d, row)

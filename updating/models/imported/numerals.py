@@ -47,7 +47,7 @@ def columns_of(text: bytes, kinds: str, path: Path, *, first: int = 1) -> list[A
     Raises
     ------
     StudyError
-        With the line, if one has another number of words, or a word is no number or not finite.
+        With the line, if one has another number of words, or a word is not a number or not finite.
     """
     if text.translate(None, NUMERALS):
         raise _fault(text, kinds, path, first)
@@ -87,15 +87,15 @@ def _fault(text: bytes, kinds: str, path: Path, first: int) -> StudyError:
 
 
 def _wrong(words: list[str], kinds: str) -> str:
-    """Say what is wrong with a line."""
+    """State what is wrong with a line."""
     for word, kind in zip(words, kinds, strict=False):
         shown = repr(word[:40])
         if "," in word:
             return f"{shown} holds a comma; write numbers with a decimal point and blanks between them"
         if not NUMBER.fullmatch(word):
-            return f"{shown} is no number; the file is damaged or of another kind"
+            return f"{shown} is not a number; the file is damaged or of another kind"
         if kind == "i" and (not word.lstrip("+-").isdigit() or abs(int(word[:20])) >= 2**63):
-            return f"{shown} is no whole number of a row or column"
+            return f"{shown} is not a whole number of a row or column"
         if not np.isfinite(float(word.upper().replace("D", "E"))):
             return f"{shown} is beyond any number"
     return "" if len(words) == len(kinds) else f"{len(words)} numbers on a line where {len(kinds)} should be"

@@ -55,7 +55,7 @@ def dissected(matrix: Sparse, places: FloatArray) -> IntArray:
 
 
 def _halves(at: FloatArray) -> Any:
-    """Tell which places lie in the upper half along the longest side, None if they cannot be parted."""
+    """Return which places lie in the upper half along the longest side, None if they cannot be parted."""
     along = at[:, int(np.argmax(np.ptp(at, axis=0)))]
     upper = along > np.median(along)
     return upper if upper.any() and not upper.all() else None

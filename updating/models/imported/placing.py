@@ -56,7 +56,7 @@ class Found:
 
     @property
     def on(self) -> bool:
-        """Whether the point lies on the structure, as far as nodes can tell."""
+        """Whether the point lies on the structure, as far as the nodes show."""
         return self.distance <= self.spacing and self.beyond <= BEYOND * self.spacing
 
 
@@ -108,7 +108,7 @@ class Places:
         return tuple((index, KDTree(self.at[index])) if len(index) else None for index in chosen)
 
     def has(self, axis: int) -> bool:
-        """Tell whether any node is known to move along an axis 0, 1, 2, or to turn about it, 3, 4, 5."""
+        """Return whether any node is known to move along an axis 0, 1, 2, or to turn about it, 3, 4, 5."""
         return self._trees[axis] is not None
 
     def find(self, point: FloatArray, axis: int) -> Found:
@@ -116,7 +116,7 @@ class Places:
 
         The fit is a cubic surface through the nodes about the point, nearest nodes weighing most: moving least squares
         (Lancaster and Salkauskas 1981) with weights that fall with the fourth power of the distance, so that at a node
-        the node alone speaks.
+        only the node counts.
 
         Parameters
         ----------
@@ -192,7 +192,7 @@ class Places:
         return {name: Sparse(sparse.vstack(rows)) if rows else Sparse((0, n)) for name, rows in total.items()}
 
     def motions(self, points: FloatArray, axes: range = range(3)) -> Sparse:
-        """Return all displacements (or rotations, axes 3 to 5) that the matrices know at points (n, 3) [m]."""
+        """Return all displacements (or rotations, axes 3 to 5) that the matrices have at points (n, 3) [m]."""
         rows = [Sparse((0, self.moves[0].shape[1]))]
         every = (*self.moves, *self.turns)
         for point in points:

@@ -59,7 +59,7 @@ def read_matrix(path: Path | str, kind: str = "stiffness", name: str | None = No
     Raises
     ------
     StudyError
-        If the file is missing, of an unknown kind, or not what its name says.
+        If the file is missing, of an unknown kind, or not what its name states.
     """
     path = Path(path)
     ending = path.suffix.lower()
@@ -113,7 +113,7 @@ def read_imported(
     Parameters
     ----------
     stiffness, mass : Path
-        Matrices of the whole structure on its supports [as ``units`` says].
+        Matrices of the whole structure on its supports [as ``units`` states].
     nodes : Path
         Node table (CSV), or the CalculiX deck.
     stiffness_parts, mass_parts : sequence of Path

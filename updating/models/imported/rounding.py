@@ -43,7 +43,7 @@ def decimal_rounding(matrix: Sparse) -> float:
 
 
 def _written(size: FloatArray, digits: int) -> BoolArray:
-    """Tell which numbers are those of so many significant digits."""
+    """Return which numbers are those of so many significant digits."""
     units = size * 10.0 ** (digits - 1 - np.floor(np.log10(size)))
     return np.asarray(np.abs(units - np.round(units)) <= 4 * EPS * units)
 

@@ -137,7 +137,7 @@ class ImportedStructure(Structure):
         )
 
     def point_masses(self) -> Sparse:
-        """Return the mass matrix of the masses the modeller knows of, which move in all directions [kg]."""
+        """Return the mass matrix of the masses stated by the modeller, which move in all directions [kg]."""
         total = Sparse((self.n_dofs, self.n_dofs))
         places = self.imported.places
         for mass in self.spec.masses:

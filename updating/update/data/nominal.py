@@ -21,7 +21,7 @@ from updating.update.parameters.affine import Affine, affine, eligible
 from updating.update.parameters.parameters import ParameterSet
 
 BEYOND = 4
-"""So many elastic modes beyond the rank of the highest partner are looked at for partners [-]."""
+"""So many elastic modes beyond the rank of the highest partner are examined for partners [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ class Nominal:
 
     @property
     def count(self) -> int:
-        """Number of elastic modes among which partners are looked for."""
+        """Number of elastic modes among which partners are sought."""
         return max(len(self.modes.frequency), int(self.order.max()) + BEYOND)
 
     @cached_property

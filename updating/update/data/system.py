@@ -64,7 +64,7 @@ class System:
     drawn : (p,) array, optional
         Coordinates near which they are held, where these were drawn anew; left out, those of the nominal model.
     shapes : bool
-        Whether the shapes, or the constants where a specimen says so, are data behind the frequencies; their
+        Whether the shapes, or the constants where a specimen states so, are data behind the frequencies; their
         residuals are whitened.
     """
 
@@ -105,7 +105,7 @@ class System:
 
     @cached_property
     def prior(self) -> FloatArray:
-        """Diagonal of W_theta: inverse variances of the parameters, 0 where none is told."""
+        """Diagonal of W_theta: inverse variances of the parameters, 0 where none is stated."""
         tolerated = np.array([k.tolerated for k in self.model_parameters]) & self.regularised
         return np.where(tolerated, 1 / self.doubt**2, 0.0)
 

@@ -16,7 +16,7 @@ from updating.update.parameters.affine import NONE, Group, groups
 from updating.update.parameters.parameters import ModelParameter
 
 RANGE = 1.6
-"""Modes up to so many times the highest measured frequency are looked at."""
+"""Modes up to so many times the highest measured frequency are examined."""
 
 ANSWERS = (120, 50)
 """Most static answers that are worked out, and most of their directions that join the basis."""
@@ -41,7 +41,7 @@ def update_basis(
 
     It holds the lowest modes of the model at a state and the static answers to the forces that appear where the
     parts of the model that a parameter scales are changed in these modes: the first terms of the series of
-    combined approximations (Kirsch, Int. J. Numer. Meth. Engng 35 (1992)). It knows no release of a clamp.
+    combined approximations (Kirsch, Int. J. Numer. Meth. Engng 35 (1992)). It does not include the release of a clamp.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def update_basis(
     count : int
         Number of measured modes [-].
     state : State
-        Where in the space of the parameters; only its factors are looked at.
+        Where in the space of the parameters; only its factors are used.
     answers : tuple of int
         Most static answers that are worked out, and most of their directions that join the basis [-].
     """

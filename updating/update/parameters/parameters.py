@@ -38,11 +38,11 @@ FACTOR_RANGE = (0.05, 20.0)
 """Bounds of every factor [-]."""
 
 UNTOLD = np.log(2.0)
-"""1-sigma scale of the logarithm of a factor of which the study says no tolerance [-]."""
+"""1-sigma scale of the logarithm of a factor of which the study states no tolerance [-]."""
 
 
 def only_damps(name: str) -> bool:
-    """Tell whether a parameter, as the user writes it, is a matter of damping alone."""
+    """Return whether a parameter, as the user writes it, is a matter of damping alone."""
     effect, _, parameter = name.partition(".")
     if effect in LIBRARY:
         return LIBRARY[effect].damps(parameter)
@@ -223,7 +223,7 @@ def build_parameter_set(
     Raises
     ------
     StudyError
-        If a name means nothing, stands twice, or cannot be examined on this specimen.
+        If a name means nothing, is given twice, or cannot be examined on this specimen.
     """
     model_parameters: list[ModelParameter] = []
     for name in names:
@@ -232,7 +232,7 @@ def build_parameter_set(
         raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
     seen = [model_parameter.name for model_parameter in model_parameters]
     if twice := sorted({n for n in seen if seen.count(n) > 1}):
-        raise StudyError(f"update: parameter {twice[0]!r} stands twice; name each once")
+        raise StudyError(f"update: parameter {twice[0]!r} is given twice; name each once")
     parameter_set = ParameterSet(tuple(model_parameters), fixed)
     _check_complete(parameter_set, predictor)
     return parameter_set
@@ -360,7 +360,7 @@ def _regional(
 
 
 def _unit(unit: str, nominal: float, spec: Spec) -> str:
-    """Return the unit of a property; a factor has none where no material of imported matrices is told."""
+    """Return the unit of a property; a factor has none where no material of imported matrices is stated."""
     return "-" if spec.imported is not None and nominal == 1.0 else unit
 
 

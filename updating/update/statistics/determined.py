@@ -26,7 +26,7 @@ class Statistics:
     covariance : (p, p) array
         Of the coordinates; infinite variance where nothing determines a parameter.
     undetermined : (p,) bool array
-        Parameters of which the data alone say less than the doubt there was before, and do not contradict it.
+        Parameters that the data alone determine less than the doubt there was before, and do not contradict it.
     chi2 : float
         Sum of squared residuals over measurement variance [-].
     dof : int
@@ -98,7 +98,7 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
 
 
 def _of_frequencies(system: System, linear: Linear) -> float:
-    """Return by how much frequencies alone are missed beyond chance, r.m.s.; else 1; many shapes drown it [-]."""
+    """Return by how much frequencies alone are missed beyond chance, r.m.s.; else 1; many shapes outweigh it [-]."""
     behind = system.count_of_frequencies
     missed = system.frequency_misfit(linear.evaluations)
     free = float(np.sum((1 - leverage(system, linear)[:behind])[system.used]))

@@ -1,4 +1,4 @@
-"""What nobody should believe of an update: nothing left to test it by, pairs that are none, mirrored places."""
+"""What not to trust in an update: nothing left to test it by, pairs that are none, mirrored places."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ distance from 1 doubled, a body in the wrong place goes unseen [-]."""
 
 
 def doubts(system: System, solution: Solution, dof: int) -> Iterator[str]:
-    """Say what the numbers of an update do not show.
+    """State what the numbers of an update do not show.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def doubts(system: System, solution: Solution, dof: int) -> Iterator[str]:
 
 
 def _taken_up(system: System, solution: Solution) -> bool:
-    """Tell whether parameters as many as data, held by wide tolerances at most, take all of these up."""
+    """Return whether parameters as many as data, held by wide tolerances at most, take all of these up."""
     if len(system.model_parameters) < system.count:
         return False
     linear = system.linear(solution.theta, solution.evaluations)
@@ -57,8 +57,8 @@ def _taken_up(system: System, solution: Solution) -> bool:
 def untested(data: int, parameters: int) -> str:
     """Return what to say where no degree of freedom is left."""
     return (
-        f"nothing is tested: {data} data and {parameters} parameters leave no degree of freedom, a wrong model would "
-        "meet the data as well; name fewer parameters, or give more modes, or shapes as data"
+        f"the fit is not tested: {data} data and {parameters} parameters leave no degree of freedom, so a "
+        "wrong model would fit as well; name fewer parameters, or give more modes, or shapes as data"
     )
 
 
@@ -72,13 +72,14 @@ def _poor_pairs(specimen: Specimen, evaluation: Evaluation) -> Iterator[str]:
     if len(poor):
         named = ", ".join(f"{specimen.number[i]} (MAC {mac[i]:.2f})" for i in poor[:6].tolist())
         yield (
-            f"{specimen.title}: the updated model's shape is not that of test mode {named}{', ...' * (len(poor) > 6)}: "
-            "pairs may be mistaken, or something is wrong that no parameter turns; `diagnose` the study"
+            f"{specimen.title}: the updated model's shape is not that of test mode "
+            f"{named}{', ...' * (len(poor) > 6)}: the pairing may be wrong, or the model has an error that "
+            "none of the parameters describes; `diagnose` the study"
         )
 
 
 def _mirrored(specimen: Specimen, values: list[float]) -> Iterator[str]:
-    """Name places that have a mirror image which frequencies do not tell from them, known masses left aside."""
+    """Name places that have a mirror image which frequencies do not separate from them, known masses left aside."""
     spec = replace(specimen.predictor.spec, masses=())
     found: dict[str, dict[str, float]] = {}
     for model_parameter, value in zip(specimen.parameter_set.model_parameters, values, strict=True):
@@ -90,6 +91,6 @@ def _mirrored(specimen: Specimen, values: list[float]) -> Iterator[str]:
             where = {"x": x, "y": y}
             image = ", ".join(f"{axis} = {where[axis]:.4g} m" for axis in at)
             yield (
-                f"{effect}: the structure is alike from both ends, so that frequencies hardly tell its place from "
-                f"the mirror image at {image}; compare shapes, or give the place"
+                f"{effect}: the structure is symmetric end to end, so frequencies hardly separate its "
+                f"place from the mirror image at {image}; compare shapes, or give the place"
             )

@@ -1,7 +1,7 @@
 """Which parameters their tolerances keep from where the data would take them.
 
-How much data say of a parameter is a matter of where it stands: a soft support is hardly seen where it is stiff. Near
-the nominal model a tolerance may hold what the data, asked further away, determine well.
+How much data determine a parameter is a matter of where it stands: a soft support is hardly seen where it is stiff.
+Near the nominal model a tolerance may hold what the data, asked further away, determine well.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Doubled: twice the time where a fit is bad; the one that the data ask for is rar
 
 BEYOND = 3.0
 """Data contradict a tolerance that they would leave by more than so many times [-]. Doubled: what is 3 to 6 off is
-said to be held by nothing."""
+reported as held by nothing."""
 
 CHANCE = 1e-3
 """A misfit that falls by more than chance makes it, with this probability, falls for a reason [-]."""
@@ -90,7 +90,7 @@ def _released(system: System, solution: Solution, index: int) -> Held | None:
 
 
 def sentences(system: System, found: tuple[Held, ...]) -> Iterator[str]:
-    """Say of each parameter held what holds it and what to do."""
+    """State for each parameter held what holds it and what to do."""
     return (h.sentence(system) for h in found)
 
 

@@ -26,7 +26,7 @@ def redrawn_frequencies(
 ) -> FloatArray:
     """Draw the hits of a test anew, and refit the poles that were identified.
 
-    The modes are not looked for again: their number and the background stay those of the identification.
+    The modes are not searched again: their number and the background stay those of the identification.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ NARROWED = 0.5
 [-]. Of two that only a ratio ties each keeps 0.7. Doubled: whatever has a tolerance is determined."""
 
 NOTHING = 1e-3
-"""What data that say nothing leave is a thousand times the doubt, so that matrices can be inverted [-]."""
+"""What uninformative data leave is a thousand times the doubt, so that matrices can be inverted [-]."""
 
 SIMPLE = 0.03
 """Exponents so near to a whole number or a half are written as such [-]."""
@@ -39,7 +39,7 @@ SIMPLE = 0.03
 
 @dataclass(frozen=True)
 class Coupling:
-    """Parameters that data do not tell apart.
+    """Parameters that data do not separate.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Coupling:
         """Return one sentence."""
         names = ", ".join(self.parameters)
         if len(self.parameters) == 1:
-            return f"{names}: the data say less of it than was known before"
+            return f"{names}: the data are weaker than the prior knowledge"
         if not self.determined:
             return f"{names}: the data determine no combination of them"
         known = "; ".join(
@@ -77,12 +77,12 @@ class Determinability(Displayed):
     ----------
     singular_values : (min(n, p),) array
         Of the sensitivities over what the measurement is good for, times the doubts: how many times the data
-        narrow a direction; under 1 they say less than was known [-].
+        narrow a direction; under 1 they are weaker than the prior knowledge [-].
     alone : (p,) array
         Standard deviation of each parameter from the data alone, all others free, over its doubt [-].
     undetermined : (p,) bool array
-        Parameters of which the data alone say less than the doubt, which they do not contradict either, and whose doubt
-        they do not even halve together with the tolerances of the others.
+        Parameters that the data alone determine less than the doubt, which they do not contradict either, and whose
+        doubt they do not even halve together with the tolerances of the others.
     couplings : tuple of Coupling
         Parameters that only combinations determine, group by group.
     subset : tuple of str

@@ -1,4 +1,4 @@
-"""Several solutions weighed against one another: a mixture of normal distributions, one about each."""
+"""Several solutions weighted against one another: a mixture of normal distributions, one about each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.special import ndtr
 from acquisition.arrays import FloatArray
 
 NOTICED = 0.01
-"""Solutions of less weight than this are not spoken of [-]."""
+"""Solutions of less weight than this are not reported [-]."""
 
 
 @dataclass(frozen=True, eq=False)

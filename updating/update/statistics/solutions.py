@@ -1,7 +1,7 @@
 """Several solutions: frequencies alone may be met by models that are not the structure, a mirror image for one.
 
 The iteration is repeated from other starts within the tolerances, and the solution that explains frequencies and
-shapes best is taken. Others that explain them about as well count in what is said of its errors.
+shapes best is taken. Others that explain them about as well count in what is stated about its errors.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Others:
 
 
 NONE = Others((), np.zeros(0))
-"""No other solution, or none that was looked for."""
+"""No other solution, or none that was sought."""
 
 
 Price = Callable[[System, Solution], float]
@@ -80,7 +80,7 @@ Price = Callable[[System, Solution], float]
 def best_solution(system: System, price: Price | None = None) -> tuple[Solution, Others]:
     """Return the solution that explains frequencies and shapes best, and the others.
 
-    They are looked for from other starts where tolerances hold all parameters, and frequencies alone are data or
+    They are sought from other starts where tolerances hold all parameters, and frequencies alone are data or
     the first solution is doubtful.
 
     Parameters
@@ -131,7 +131,7 @@ def within(estimate: Estimate, model_parameter: ModelParameter, several: Mixture
 
 
 def statement(system: System, several: Mixture | None) -> tuple[str, ...]:
-    """Say which parameters other solutions turn otherwise."""
+    """State which parameters other solutions turn otherwise."""
     if several is None:
         return ()
     own = np.sqrt(np.diag(several.covariance[0]))
@@ -141,7 +141,8 @@ def statement(system: System, several: Mixture | None) -> tuple[str, ...]:
     return (
         f"{several.solutions} solutions explain the data about as well (a mirror image, for instance)"
         + (f" and differ in {names}" if names else "")
-        + '; standard deviations and intervals are those of all; data = ["frequencies", "shapes"] tells them apart',
+        + '; standard deviations and intervals are those of all; data = ["frequencies", "shapes"] '
+        "separates them",
     )
 
 
@@ -162,7 +163,7 @@ def _eased(system: System) -> Solution:
 
 
 def _known(solution: Solution, found: list[Solution], doubt: FloatArray) -> bool:
-    """Tell whether a solution is one of those found."""
+    """Return whether a solution is one of those found."""
     return any(np.max(np.abs(solution.theta - s.theta) / doubt) < ALIKE for s in found)
 
 
@@ -175,7 +176,7 @@ def _starts(system: System, power: int) -> list[FloatArray]:
 
 
 def _doubtful(system: System, solution: Solution) -> bool:
-    """Tell whether frequencies, shapes, or all data together are missed by more than chance allows."""
+    """Return whether frequencies, shapes, or all data together are missed by more than chance allows."""
     left = float(system.weight @ system.residual(solution.evaluations) ** 2)
     if system.shapes and chi2.sf(left, system.count) < IMPROBABLE:
         return True

@@ -42,7 +42,7 @@ export function open(root, app) {
       h(
         "p",
         { class: "muted" },
-        "Which effect that the model leaves out makes the gap, where it sits, and how far the gap closes with it.",
+        "Which effect missing in the model causes the gap, where it lies, and how far the gap closes once it is included.",
       ),
       work.element,
     ),
@@ -51,7 +51,7 @@ export function open(root, app) {
       "section",
       { class: "panel" },
       h("h2", {}, "Planning"),
-      h("p", { class: "muted" }, "What a test of this rig could tell apart, and which change of it buys most."),
+      h("p", { class: "muted" }, "Which effects a test with this setup separates, and which change of it gains most."),
       plan.element,
       planned,
     ),

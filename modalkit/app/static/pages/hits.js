@@ -43,8 +43,8 @@ export function open(root, app) {
           "p",
           {},
           frfs.length
-            ? "The files hold FRFs, no hits: they stay as they are."
-            : "The test has modes alone: no hits and no FRFs. Go on to its modes.",
+            ? "This file contains FRFs only; there are no hits to check."
+            : "The test has modes only, without hits or FRFs. Continue on the page of modes.",
         ),
       );
     } else {
@@ -120,7 +120,7 @@ export function open(root, app) {
     fill(
       verdict,
       h("strong", {}, `Hit ${hit} at ${point}: ${v.used ? "used" : "left out"}. `),
-      v.reasons.join("; ") || "Nothing speaks against it.",
+      v.reasons.join("; ") || "No fault was found.",
     );
     const mark = v.used ? "green" : "red";
     const s = found.spectrum;

@@ -1,4 +1,4 @@
-// Model: what the study says, sliders for effects and factors, pairs found and pairs stated.
+// Model: what the study states, sliders for effects and factors, pairs found and pairs stated.
 
 import { get, post } from "../api.js";
 import { draw, drawFrf, line, macMatrix, modesAxis } from "../charts.js";
@@ -27,12 +27,12 @@ export function open(root, app) {
     h(
       "details",
       {},
-      h("summary", {}, "The whole study as text"),
+      h("summary", {}, "Study as text"),
       text,
       h(
         "div",
         { class: "row" },
-        button("Take this text", () => app.act("text", { text: text.value }), { id: "study-take" }),
+        button("Apply", () => app.act("text", { text: text.value }), { id: "study-take" }),
       ),
     ),
   );
@@ -231,7 +231,7 @@ export function open(root, app) {
 
   const choice = (name, made) => h("div", { class: "row" }, field(name, made));
 
-  /** The factors of one region; those of the others stay as they were moved, and the list says so. */
+  /** The factors of one region; those of the others stay as they were moved, and the list states so. */
   function regioned() {
     const all = view.page.factors.filter((f) => f.region);
     const names = [...new Set(all.map((f) => f.region))];
@@ -412,7 +412,7 @@ function howToWrite() {
   return h(
     "section",
     { class: "panel", id: "no-model" },
-    h("p", {}, "To compare one, write it under The whole study as text below and take the text; for instance:"),
+    h("p", {}, 'To compare one, add it under "Study as text" below, then click "Apply"; for instance:'),
     h("pre", {}, example),
     h("p", {}, "All keys: docs/reference/study.md; decks and matrices step by step: docs/tutorials/own_model.md."),
   );

@@ -27,7 +27,7 @@ export function open(root, app) {
   const view = { page: null, frf: null, over: "sum", curve: null, typed: {} };
 
   async function update() {
-    readout.textContent = ""; // what it said was of the state before
+    readout.textContent = ""; // what it stated was of the state before
     view.page = await get("modes");
     const page = view.page;
     picking.hidden = fitted.hidden = !page.identified;
@@ -121,7 +121,7 @@ export function open(root, app) {
         chips.map(([word, f, back]) =>
           button(`${word} ${Number(f.toPrecision(6))} Hz ×`, () => app.act(back, { hertz: f }), {
             class: "chip",
-            title: "take it back",
+            title: "undo this",
           }),
         ),
       ),

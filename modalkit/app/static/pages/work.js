@@ -36,7 +36,7 @@ export function worker(app, kind, { start, again, done }) {
             job.kind === kind ? `${job.seconds.toFixed(0)} s` : `waits: ${job.kind} is running`,
           )
         : null,
-      job?.state === "stopped" ? h("span", { class: "muted" }, "Stopped; nothing of it is kept.") : null,
+      job?.state === "stopped" ? h("span", { class: "muted" }, "Stopped; no result was kept.") : null,
       job?.state === "failed" ? h("span", { class: "error" }, job.error) : null,
     );
     fill(

@@ -1,9 +1,9 @@
-"""A beam or a plate of solid bricks, solved by CalculiX: truth that knows nothing of beams and plates.
+"""A beam or a plate of solid bricks, solved by CalculiX: a reference independent of beam and plate theory.
 
 It offers what ``Beam`` and ``Plate`` do for dry bodies (``body.Body``): ``start``, ``end``, ``width``, ``side``,
 ``thickness``, ``E``, ``density``, ``poisson``, ``clamped``, ``clamp_rotation``, ``attached``, ``alpha``, ``beta``,
 ``added_alpha``, ``added_beta``, ``added_loss``, and ``cuts``: slots of real width and depth in its upper face.
-``kind`` says whether places are (n, 1) on a beam's centre line or (n, 2) on a plate. A beam is half of one, held in
+``kind`` states whether places are (n, 1) on a beam's centre line or (n, 2) on a plate. A beam is half of one, held in
 its plane of symmetry, so that it neither twists nor sways. Modes that move in the plane are left out. Needs ``ccx``
 on the path (``available()``).
 """

@@ -68,7 +68,7 @@ class Held:
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
-            raise ValueError(f"{self.name!r} is no name of a matrix")
+            raise ValueError(f"{self.name!r} is not a name of a matrix")
         if not SINGLE <= self.type <= COMPLEX_DOUBLE:
             raise ValueError(f"{self.name} has type {self.type}; types are 1 to 4")
         if self.rows < 1 or self.columns < 1:
@@ -100,7 +100,7 @@ class Held:
         Raises
         ------
         ValueError
-            If something in them is no number.
+            If something in them is not a number.
         """
         values = np.asarray(numbers(b"".join(run.raw for run in self.runs)), dtype=np.float64)
         counts = [run.count for run in self.runs]
