@@ -54,4 +54,4 @@ def term_ladder(band: tuple[float, float]) -> tuple[tuple[int, ...], ...]:
     """Return sets of residual terms of growing size; low powers only where the band is clear of zero."""
     if band[0] > 0.1 * band[1]:
         return ((-2, 0), (-3, -2, -1, 0, 1), (-4, -3, -2, -1, 0, 1, 2))
-    return ((-2, 0), (-2, -1, 0, 1, 2), (-2, -1, 0, 1, 2, 3, 4))
+    return ((-2, 0), (-2, -1, 0, 1), (-2, -1, 0, 1, 2), (-2, -1, 0, 1, 2, 3, 4))
