@@ -1,25 +1,29 @@
 """Re-analysis on a small basis that keeps every change a State can express.
 
 The basis holds the lowest modes of the nominal model, the static answers to softening each region and to
-loading each test point, and, behind them, what a clamp sets free when it is released. Matrices of any state
+loading each test point, and, behind them, what a clamp sets free when it is released, whole or, of a plate, along a
+part of an edge. Matrices of any state
 are sums of small precomputed ones, so a prediction costs one dense eigenproblem of some fifty unknowns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain, combinations
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from scipy import linalg as dense
 from scipy import sparse
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from acquisition.errors import StudyError
 from updating.models.absorbers import bordered
 from updating.models.base import FACTORS, Structure, Term, added, region_scales, scale_of, supports_at
+from updating.models.edges import static_lifts
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
@@ -88,12 +92,15 @@ class Reduced:
         where the translation alone is released, :meth:`matrices` holds the slopes that other columns have.
     changes : tuple of Change
         What a better theory changes of the whole.
+    lifts : mapping of str to slice
+        Columns that a part of an edge needs where it lets go, by kind and edge: ``rotation x0``.
     """
 
     structure: Structure
     basis: FloatArray
     ranks: Mapping[frozenset[str], int]
     changes: tuple[Change, ...] = ()
+    lifts: Mapping[str, slice] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def whole(self) -> bool:
@@ -200,6 +207,8 @@ class Reduced:
         stiffness, mass = total["stiffness"], total["mass"]
         if state.released == TRANSLATION:
             stiffness, mass = self._without_slopes(stiffness, mass)
+        if (idle := self._idle(state.released)) is not None:
+            stiffness, mass = _cut_off(stiffness, mass, idle)
         if state.absorbers:
             stiffness = bordered(stiffness, state.absorbers, "stiffness")
             mass = bordered(mass, state.absorbers, "mass")
@@ -217,11 +226,24 @@ class Reduced:
     @cached_property
     def _slopes(self) -> tuple[FloatArray, FloatArray]:
         """Projections (r, r) on what has no slope at the clamps, and on the rest."""
-        slopes = self.basis[self.structure.fixed["rotation"]]
+        slopes = self.basis[self.structure.fixed["rotation"], : self.ranks[TRANSLATION]]
         _, size, directions = np.linalg.svd(slopes, full_matrices=False)
         turning = directions[size > 1e-8 * size[0]]
         rest = turning.T @ turning
         return np.eye(len(rest)) - rest, rest
+
+    def _idle(self, released: frozenset[str]) -> BoolArray | None:
+        """Tell which columns a clamp with a released part leaves out, (r,); None where there is no such part.
+
+        A whole kind that is released beside one takes the columns of all edges, so that none are nearly alike.
+        """
+        if not released & self.lifts.keys() or released >= self.lifts.keys() | self.structure.fixed.keys():
+            return None
+        idle = np.arange(self.basis.shape[1]) >= self.ranks[frozenset()]
+        for name, columns in self.lifts.items():
+            if name in released or name.split()[0] in released:
+                idle[columns] = False
+        return idle
 
     @cached_property
     def sums(self) -> tuple[FloatArray, ...]:
@@ -318,11 +340,22 @@ class Reduced:
         Eigenvalues are not numbers where the state has lost its mass.
         """
         stiffness, mass = self.matrices(state)
+        used = np.ones(len(mass), dtype=bool)
+        if (idle := self._idle(state.released)) is not None:
+            used[: len(idle)] = ~idle
+        vectors = np.eye(len(mass))[:, used]
         try:
-            values, vectors = dense.eigh(stiffness, mass)
+            values, vectors[used] = dense.eigh(stiffness[np.ix_(used, used)], mass[np.ix_(used, used)])
         except dense.LinAlgError:  # a mass that is not positive
-            return np.full(len(mass), np.nan), np.eye(len(mass))
+            return np.full(used.sum(), np.nan), vectors
         return values, vectors
+
+
+def _cut_off(stiffness: FloatArray, mass: FloatArray, idle: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices with idle columns (r,) cut off from all else, on a frequency above every other."""
+    above = 1e3 * float(np.abs(np.diag(stiffness)[~idle]).max())
+    used = np.outer(~idle, ~idle)
+    return np.where(used, stiffness, above * np.diag(idle)), np.where(used, mass, np.diag(idle) * 1.0)
 
 
 def reduce_structure(
@@ -364,7 +397,26 @@ def reduce_structure(
             basis = extend_basis(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
             ranks[released] = basis.shape[1]
         ranks[TRANSLATION] = basis.shape[1]
-    return Reduced(structure, basis, ranks)
+    return _with_parts(structure, Reduced(structure, basis, ranks), mass)
+
+
+def _with_parts(structure: Structure, reduced: Reduced, mass: Sparse) -> Reduced:
+    """Return a plate's model with columns behind the others for parts of its clamped edges that let go.
+
+    Those of one edge and kind are orthonormal to the clamped columns and among themselves, not to others: to be so they
+    would have to take up what another edge moves by.
+    """
+    if not isinstance(structure, FieldStructure) or not structure.along:
+        return reduced
+    clamped, basis, lifts = reduced.basis[:, : reduced.ranks[frozenset()]], reduced.basis, {}
+    for name in structure.along:
+        own = extend_basis(clamped, static_lifts(structure, name), mass)[:, clamped.shape[1] :]
+        lifts[name] = slice(basis.shape[1], basis.shape[1] + own.shape[1])
+        basis = np.hstack([basis, own])
+    kinds = [*structure.fixed, *lifts]
+    sets = chain.from_iterable(combinations(kinds, n) for n in range(1, len(kinds) + 1))
+    ranks = {frozenset(s): basis.shape[1] for s in sets} | dict(reduced.ranks)
+    return Reduced(structure, basis, ranks, lifts=MappingProxyType(lifts))
 
 
 def extend_basis(

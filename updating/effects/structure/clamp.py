@@ -1,4 +1,4 @@
-"""Clamps that give: in rotation, in translation, or in a pair of effects in both."""
+"""Clamps that give: in rotation, in translation, or in a pair of effects in both; of plates along a part of an edge."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.effects.base import Effect, Parameter, Values, Variant, bending_stiffness
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness
+from updating.effects.box import mirror_images
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import WAYS, centre_of, one_of, way
+from updating.effects.structure.edge_stretch import on_a_stretch
 from updating.effects.structure.length import clamped_places
 from updating.effects.structure.spring import own_stiffness
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.groups import Support
+from updating.models.spec import Spec
 from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.models.yielding import Yielding
@@ -44,9 +47,27 @@ RIGID = 1e7
 """Stiffness of a clamp that holds beside one that gives way, in natural units [-]: it moves frequencies by a hundred
 thousandth. A hundred times as much costs the eigenvalues as many digits as it gains."""
 
+WHOLE_EDGE = 0.7
+"""Prior share of clamps of plates that give way along their whole edge [-]: made so, or not tightened enough, as
+against one loose bolt, a warped jaw or dirt in it. Judged; doubled, a part of the edge gains ln 2."""
+
+STRETCHES = ((0.0, 0.5), (1.0, 0.5), (0.5, 0.5), (0.0, 0.25), (1.0, 0.25))
+"""Stretches of an edge from which a search starts: place and length, as quantiles [-]. Each half, the middle and both
+ends: what is shorter is found from these."""
+
+SIZES = (0.3, 0.7)
+"""Quantiles of the stiffness from which a search starts [-]."""
+
+OFF = 1e-3
+"""How far, relative to the edge, a stated stretch may miss its ends: digits that a user does not write out [-]."""
+
 
 class Clamp(Effect):
-    """A spring in place of a built-in edge."""
+    """A spring in place of a built-in edge.
+
+    On plates it acts ``from`` one place ``to`` another along the edge, by y of an edge of constant x; the rest of the
+    edge holds. The prior takes any length and any place, each alike.
+    """
 
     channel = "stiffness"
     models = ("beam", "plate", "matrices")
@@ -62,16 +83,63 @@ class Clamp(Effect):
     span: ClassVar[tuple[float, float]]
     """Range of the prior, in natural units."""
     why: ClassVar[str]
+    firm: ClassVar[float]
+    """Stiffness of an edge that holds beside a stretch that gives way, in natural units: what is stiffer costs the
+    eigenvalues digits, what is softer moves frequencies by more than a hundred thousandth [-]."""
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return the spring's stiffness, per metre of edge on plates."""
+        """Return the spring's stiffness, per metre of edge on plates, and there from where to where it acts."""
         spec = predictor.spec
         if spec.imported is None:
             scale = bending_stiffness(spec) / spec.length**self.power
         else:
             scale = own_stiffness(predictor) * spec.imported.reach ** (3 - self.power)
         unit = self.units[spec.kind == "plate"]
-        return (Parameter("stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True),)
+        stiffness = Parameter(
+            "stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True
+        )
+        if spec.kind != "plate" or not spec.clamped:
+            return (stiffness,)
+        size = _longest(spec)
+        why = "any stretch of the clamped edge, its length and its place alike probable"
+        ends = (("from", 0.0), ("to", size))
+        return (
+            stiffness,
+            *(Parameter(name, "m", 0.0, size, why, default=end, natural=EDGES) for name, end in ends),
+        )
+
+    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
+        """Take prior quantiles to values: on plates those of the place and of the length of the stretch."""
+        values = super().values(predictor, coordinates)
+        if "to" in values:
+            size, (place, length) = _longest(predictor.spec), coordinates[1:]
+            values["from"] = place * (1 - length) * size
+            values["to"] = values["from"] + length * size
+        return values
+
+    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
+        """Take values to prior quantiles."""
+        found = super().quantiles(predictor, values)
+        if len(found) > 1 and "to" in values and "from" in values:
+            size = _longest(predictor.spec)
+            length = float(np.clip((values["to"] - values["from"]) / size, 0.0, 1.0))
+            place = values["from"] / size / max(1 - length, 1e-9)
+            found[1:] = [float(np.clip(place, 0.0, 1.0)), length]
+        return found
+
+    def settled(self, predictor: Predictor, values: Values) -> Values:
+        """Return the values with a stretch of the longest edge, as the prior has it, on the edge that is meant."""
+        edge = values.get("support", ALL)
+        if "to" not in values or edge == ALL:
+            return values
+        share = edge_size(predictor.spec, str(edge)) / _longest(predictor.spec)
+        return {**values, "from": values["from"] * share, "to": values["to"] * share}
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from little and much stiffness, on plates of some stretches of the edge."""
+        if len(self.parameters(predictor)) == 1:
+            return super().starts(predictor)
+        return tuple((size, *stretch) for stretch in STRETCHES for size in SIZES)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need a clamp."""
@@ -79,12 +147,27 @@ class Clamp(Effect):
             return None if predictor.spec.imported.supports else Obstacle(Lack.MODEL, NOT_HELD)
         return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
+    def names_in(self, spec: Spec) -> set[str]:
+        """Return that one of several clamped edges may be named, and a support of imported matrices."""
+        return (
+            super().names_in(spec)
+            if spec.imported is not None
+            else {"support"}
+            if len(spec.clamped) > 1
+            else set()
+        )
+
     def repeats_on(self, predictor: Predictor) -> bool:
         """State that two feet may give way, or one foot in two directions; the clamps of a beam are one form each."""
         return predictor.spec.imported is not None
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return the forms: all clamps alike, and each alone; of imported matrices each support in each direction."""
+        """Return the forms: all clamps alike, and each alone; of imported matrices each support in each direction.
+
+        Of plates along the whole edge, and along any part of each edge.
+        """
+        if predictor.spec.kind == "plate":
+            return _edges(predictor)
         if predictor.spec.imported is None:
             return _clamps(predictor)
         supports = predictor.spec.imported.supports
@@ -108,10 +191,13 @@ class Clamp(Effect):
 
     def sentence(self, values: Values) -> str:
         """Return the summary, and which support in which direction."""
+        along = ""
+        if "from" in values and "to" in values:
+            along = f" It does so along the edge from {values['from']:.3g} to {values['to']:.3g} m; the rest holds."
         if values.get("support", ALL) == ALL:
-            return self.summary
+            return self.summary + along
         if "direction" not in values:
-            return f"{self.summary} It is the one at {values['support']}."
+            return f"{self.summary} It is the one at {values['support']}.{along}"
         way = str(values["direction"])
         towards = "alike in all directions" if way == ALL else way.replace("r", "about ")
         return f"{self.summary} It is {values['support']}, {towards}."
@@ -126,6 +212,9 @@ class Clamp(Effect):
             support = one_of(predictor.spec.imported.supports, values, "support")
             return State(yielding={support.name: self._yielding(predictor, support, values)})
         own, others = _released_edges(predictor, values)
+        if (stretch := stretch_of(predictor.spec, own, values)) is not None:
+            firm = self.firm * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
+            return on_a_stretch(predictor, self.freed, own[0], stretch, float(values["stiffness"]), firm)
         held = values["stiffness"] * unit_edges(predictor, self.freed, own)
         if others:
             firm = RIGID * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
@@ -153,7 +242,16 @@ class Clamp(Effect):
         """Return the clamped edges that give way, or the support."""
         if predictor.spec.imported is not None:
             return (centre_of(one_of(predictor.spec.imported.supports, values, "support")),)
-        return clamped_places(predictor, edges=_released_edges(predictor, values)[0])
+        edges = _released_edges(predictor, values)[0]
+        places = clamped_places(predictor, edges=edges)
+        if (stretch := stretch_of(predictor.spec, edges, values)) is None:
+            return places
+        (x, y, z), middle = places[0], sum(stretch) / 2
+        at = (x, middle, z) if edges[0][0] == "x" else (middle, y, z)
+        if predictor.measured.has_shapes:
+            return (at,)
+        along = 1 if edges[0][0] == "x" else 0  # along the edge alone: another edge is a form of its own
+        return tuple(one for one in mirror_images(predictor.spec, at) if one[1 - along] == at[1 - along])
 
 
 def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
@@ -163,6 +261,54 @@ def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
         return (Variant(),)
     alone = tuple(Variant({"support": edge}, (1 - ALIKE) / len(clamped)) for edge in clamped)
     return (Variant({"support": ALL}, ALIKE), *alone)
+
+
+def _edges(predictor: Predictor) -> tuple[Variant, ...]:
+    """Return the clamps of a plate along their whole edges, and each along a part of its own."""
+    spec = predictor.spec
+    longest = _longest(spec)
+    whole = [
+        Variant({**form.values, "from": 0.0, "to": longest}, WHOLE_EDGE * form.weight)
+        for form in _clamps(predictor)
+    ]
+    share = (1 - WHOLE_EDGE) / max(len(spec.clamped), 1)
+    named = len(spec.clamped) > 1
+    return (*whole, *(Variant({"support": edge} if named else {}, share) for edge in spec.clamped))
+
+
+def edge_size(spec: Spec, edge: str) -> float:
+    """Return the length of an edge of a plate [m]."""
+    return spec.width if edge[0] == "x" else spec.length
+
+
+def _longest(spec: Spec) -> float:
+    """Return the length of the longest clamped edge of a plate, as far as the prior of a stretch reaches [m]."""
+    return max((edge_size(spec, edge) for edge in spec.clamped), default=0.0)
+
+
+def stretch_of(spec: Spec, edges: Sequence[str], values: Values) -> tuple[float, float] | None:
+    """Return from where to where along an edge a clamp gives way [m]; None along all of it.
+
+    Raises
+    ------
+    StudyError
+        If the stretch is off the edge, has no direction, or one of several edges is meant.
+    """
+    if spec.kind != "plate":
+        return None
+    size = min(edge_size(spec, edge) for edge in edges)
+    low, high = float(values.get("from", 0.0)), float(values.get("to", size))
+    if low <= 0.0 and high >= size * (1 - OFF):
+        return None
+    if len(edges) > 1:
+        raise StudyError(
+            f'from and to are places along one edge, and {", ".join(edges)} are clamped; add support = "{edges[0]}"'
+        )
+    if not -OFF * size <= low <= high <= (1 + OFF) * size:
+        raise StudyError(
+            f"from = {low:g} m, to = {high:g} m is no stretch of the edge {edges[0]}, from 0 to {size:g} m"
+        )
+    return max(low, 0.0), min(high, size)
 
 
 def _released_edges(predictor: Predictor, values: Values) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -196,6 +342,7 @@ class ClampRotation(Clamp):
     phrase = "a clamp that rotates"
     freed = "rotation"
     power = 1
+    firm = 1e5
     units = ("N m/rad", "N m/rad per m")
     span = (1.0, 2000.0)
     why = "from nearly a hinge to 2000 times the structure's own E I / L, where it is undetectable"
@@ -212,6 +359,7 @@ class ClampTranslation(Clamp):
     phrase = "a clamp that gives way"
     freed = "translation"
     power = 3
+    firm = 1e8
     units = ("N/m", "N/m per m")
     span = (5.0, 1e7)
     why = (
