@@ -298,7 +298,7 @@ def stretch_of(spec: Spec, edges: Sequence[str], values: Values) -> tuple[float,
         return None
     size = min(edge_size(spec, edge) for edge in edges)
     low, high = float(values.get("from", 0.0)), float(values.get("to", size))
-    if low <= 0.0 and high >= size * (1 - OFF):
+    if -OFF * size <= low <= 0.0 and size * (1 - OFF) <= high <= _longest(spec) * (1 + OFF):
         return None
     if len(edges) > 1:
         raise StudyError(
