@@ -23,7 +23,7 @@ from acquisition.arrays import BoolArray, FloatArray
 from acquisition.errors import StudyError
 from updating.models.absorbers import bordered
 from updating.models.base import FACTORS, Structure, Term, added, region_scales, scale_of, supports_at
-from updating.models.edges import static_lifts
+from updating.models.columns import columns_along, cut_off, extend_basis
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
@@ -31,9 +31,6 @@ from updating.models.terms import product
 
 ROTATION, TRANSLATION = frozenset({"rotation"}), frozenset({"translation"})
 """What a clamp may release."""
-
-ROUNDING = 1e-10
-"""What is left of a vector below this share is rounding [-]."""
 
 STATIC = float(np.finfo(float).eps) / 1e-6
 """Modes with a first eigenvalue over their own below this are static beside the first [-]: kept, they would round it by
@@ -208,7 +205,7 @@ class Reduced:
         if state.released == TRANSLATION:
             stiffness, mass = self._without_slopes(stiffness, mass)
         if (idle := self._idle(state.released)) is not None:
-            stiffness, mass = _cut_off(stiffness, mass, idle)
+            stiffness, mass = cut_off(stiffness, mass, idle)
         if state.absorbers:
             stiffness = bordered(stiffness, state.absorbers, "stiffness")
             mass = bordered(mass, state.absorbers, "mass")
@@ -233,7 +230,7 @@ class Reduced:
         return np.eye(len(rest)) - rest, rest
 
     def _idle(self, released: frozenset[str]) -> BoolArray | None:
-        """Tell which columns a clamp with a released part leaves out, (r,); None where there is no such part.
+        """Mark the columns that a clamp with a released part leaves out, (r,); None where there is no such part.
 
         A whole kind that is released beside one takes the columns of all edges, so that none are nearly alike.
         """
@@ -351,13 +348,6 @@ class Reduced:
         return values, vectors
 
 
-def _cut_off(stiffness: FloatArray, mass: FloatArray, idle: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Return the matrices with idle columns (r,) cut off from all else, on a frequency above every other."""
-    above = 1e3 * float(np.abs(np.diag(stiffness)[~idle]).max())
-    used = np.outer(~idle, ~idle)
-    return np.where(used, stiffness, above * np.diag(idle)), np.where(used, mass, np.diag(idle) * 1.0)
-
-
 def reduce_structure(
     structure: Structure, points: FloatArray, directions: FloatArray | None = None, *, modes: int = 30
 ) -> Reduced:
@@ -401,41 +391,16 @@ def reduce_structure(
 
 
 def _with_parts(structure: Structure, reduced: Reduced, mass: Sparse) -> Reduced:
-    """Return a plate's model with columns behind the others for parts of its clamped edges that let go.
-
-    Those of one edge and kind are orthonormal to the clamped columns and among themselves, not to others: to be so they
-    would have to take up what another edge moves by.
-    """
+    """Return a plate's model with columns behind the others for parts of its clamped edges that let go."""
     if not isinstance(structure, FieldStructure) or not structure.along:
         return reduced
-    clamped, basis, lifts = reduced.basis[:, : reduced.ranks[frozenset()]], reduced.basis, {}
-    for name in structure.along:
-        own = extend_basis(clamped, static_lifts(structure, name), mass)[:, clamped.shape[1] :]
-        lifts[name] = slice(basis.shape[1], basis.shape[1] + own.shape[1])
-        basis = np.hstack([basis, own])
+    clamped, behind = reduced.basis[:, : reduced.ranks[frozenset()]], reduced.basis.shape[1]
+    columns, lifts = columns_along(structure, clamped, mass, behind)
+    basis = np.hstack([reduced.basis, columns])
     kinds = [*structure.fixed, *lifts]
     sets = chain.from_iterable(combinations(kinds, n) for n in range(1, len(kinds) + 1))
     ranks = {frozenset(s): basis.shape[1] for s in sets} | dict(reduced.ranks)
     return Reduced(structure, basis, ranks, lifts=MappingProxyType(lifts))
-
-
-def extend_basis(
-    basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: float = 1e-9
-) -> FloatArray:
-    """Append the directions of ``extra`` that ``basis`` lacks, orthonormal in the mass."""
-    before = np.einsum("ij,ij->j", extra, mass @ extra)
-    for _ in range(2):
-        extra = extra - basis @ (basis.T @ (mass @ extra))
-    extra = extra[:, np.einsum("ij,ij->j", extra, mass @ extra) > ROUNDING**2 * before]
-    if not extra.shape[1]:
-        return basis
-    gram = extra.T @ (mass @ extra)
-    scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
-    values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
-    keep = values > tolerance * max(values.max(), 1e-300)
-    new = (extra / scale) @ (vectors[:, keep] / np.sqrt(values[keep]))
-    new = new - basis @ (basis.T @ (mass @ new))
-    return np.hstack([basis, new])
 
 
 def _static_answers(
@@ -469,4 +434,4 @@ def _released_shapes(
     return np.hstack(shapes)
 
 
-__all__ = ["FACTORS", "Reduced", "reduce_structure"]
+__all__ = ["FACTORS", "Reduced", "extend_basis", "reduce_structure"]

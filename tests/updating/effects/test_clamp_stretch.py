@@ -143,13 +143,13 @@ def test_of_several_edges_one_is_named() -> None:
         frequencies("clamp_rotation", 1.0, "x0", "y1", **{"from": 0.0, "to": 0.1})
     along_y = frequencies("clamp_rotation", 1.0, "x0", "y1", **{"from": 0.0, "to": 0.3, "support": "y1"})
     assert along_y.min() < -0.01
-    with pytest.raises(StudyError, match="no stretch of the edge x0, from 0 to"):
+    with pytest.raises(StudyError, match="not a stretch of the edge x0, from 0 to"):
         frequencies("clamp_rotation", 1.0, "x0", "y1", **{"from": 0.1, "to": 0.3, "support": "x0"})
 
 
 @pytest.mark.parametrize("ends", [(0.1, 0.05), (-0.01, 0.1), (0.1, 0.21), (0.0, 0.21)])
 def test_what_is_no_stretch_is_refused(ends: tuple[float, float]) -> None:
-    with pytest.raises(StudyError, match="no stretch of the edge x0, from 0 to"):
+    with pytest.raises(StudyError, match="not a stretch of the edge x0, from 0 to"):
         frequencies("clamp_rotation", 1.0, **dict(zip(("from", "to"), ends, strict=True)))
 
 

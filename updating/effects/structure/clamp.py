@@ -9,11 +9,19 @@ import numpy as np
 from scipy import sparse
 
 from acquisition.arrays import FloatArray
-from acquisition.errors import StudyError
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness
 from updating.effects.box import mirror_images
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import WAYS, centre_of, one_of, way
+from updating.effects.structure.clamp_edges import (
+    ALL,
+    clamps_and_stretches,
+    edge_size,
+    longest,
+    released_edges,
+    stretch_of,
+    whole_clamps,
+)
 from updating.effects.structure.edge_stretch import on_a_stretch
 from updating.effects.structure.length import clamped_places
 from updating.effects.structure.spring import own_stiffness
@@ -32,13 +40,6 @@ NOT_HELD = (
 )
 """Why supports of imported matrices cannot give way."""
 
-ALL = "all"
-"""Name of all clamps together, which give way alike, and of all directions in which a support holds."""
-
-ALIKE = 0.5
-"""Prior share of all clamps alike among the clamps of a structure that has several: made and tightened alike, or one of
-them loose. Doubled, one alone is out of the question."""
-
 EVERY_WAY = 0.5
 """Prior share of a support that gives way alike in all directions of its kind, where it holds in several [-]: rubber,
 or a loose bolt, as against a slide or a hinge. Judged; doubled, one direction alone is out of the question."""
@@ -47,19 +48,12 @@ RIGID = 1e7
 """Stiffness of a clamp that holds beside one that gives way, in natural units [-]: it moves frequencies by a hundred
 thousandth. A hundred times as much costs the eigenvalues as many digits as it gains."""
 
-WHOLE_EDGE = 0.7
-"""Prior share of clamps of plates that give way along their whole edge [-]: made so, or not tightened enough, as
-against one loose bolt, a warped jaw or dirt in it. Judged; doubled, a part of the edge gains ln 2."""
-
 STRETCHES = ((0.0, 0.5), (1.0, 0.5), (0.5, 0.5), (0.0, 0.25), (1.0, 0.25))
 """Stretches of an edge from which a search starts: place and length, as quantiles [-]. Each half, the middle and both
 ends: what is shorter is found from these."""
 
 SIZES = (0.3, 0.7)
 """Quantiles of the stiffness from which a search starts [-]."""
-
-OFF = 1e-3
-"""How far, relative to the edge, a stated stretch may miss its ends: digits that a user does not write out [-]."""
 
 
 class Clamp(Effect):
@@ -100,7 +94,7 @@ class Clamp(Effect):
         )
         if spec.kind != "plate" or not spec.clamped:
             return (stiffness,)
-        size = _longest(spec)
+        size = longest(spec)
         why = "any stretch of the clamped edge, its length and its place alike probable"
         ends = (("from", 0.0), ("to", size))
         return (
@@ -112,7 +106,7 @@ class Clamp(Effect):
         """Take prior quantiles to values: on plates those of the place and of the length of the stretch."""
         values = super().values(predictor, coordinates)
         if "to" in values:
-            size, (place, length) = _longest(predictor.spec), coordinates[1:]
+            size, (place, length) = longest(predictor.spec), coordinates[1:]
             values["from"] = place * (1 - length) * size
             values["to"] = values["from"] + length * size
         return values
@@ -121,7 +115,7 @@ class Clamp(Effect):
         """Take values to prior quantiles."""
         found = super().quantiles(predictor, values)
         if len(found) > 1 and "to" in values and "from" in values:
-            size = _longest(predictor.spec)
+            size = longest(predictor.spec)
             length = float(np.clip((values["to"] - values["from"]) / size, 0.0, 1.0))
             place = values["from"] / size / max(1 - length, 1e-9)
             found[1:] = [float(np.clip(place, 0.0, 1.0)), length]
@@ -132,7 +126,7 @@ class Clamp(Effect):
         edge = values.get("support", ALL)
         if "to" not in values or edge == ALL:
             return values
-        share = edge_size(predictor.spec, str(edge)) / _longest(predictor.spec)
+        share = edge_size(predictor.spec, str(edge)) / longest(predictor.spec)
         return {**values, "from": values["from"] * share, "to": values["to"] * share}
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
@@ -167,9 +161,9 @@ class Clamp(Effect):
         Of plates along the whole edge, and along any part of each edge.
         """
         if predictor.spec.kind == "plate":
-            return _edges(predictor)
+            return clamps_and_stretches(predictor.spec)
         if predictor.spec.imported is None:
-            return _clamps(predictor)
+            return whole_clamps(predictor.spec)
         supports = predictor.spec.imported.supports
         forms = [form for support in supports for form in self._ways(support)]
         whole = sum(form.weight for form in forms)
@@ -211,7 +205,7 @@ class Clamp(Effect):
         if predictor.spec.imported is not None:
             support = one_of(predictor.spec.imported.supports, values, "support")
             return State(yielding={support.name: self._yielding(predictor, support, values)})
-        own, others = _released_edges(predictor, values)
+        own, others = released_edges(predictor.spec, values)
         if (stretch := stretch_of(predictor.spec, own, values)) is not None:
             firm = self.firm * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
             return on_a_stretch(predictor, self.freed, own[0], stretch, float(values["stiffness"]), firm)
@@ -242,7 +236,7 @@ class Clamp(Effect):
         """Return the clamped edges that give way, or the support."""
         if predictor.spec.imported is not None:
             return (centre_of(one_of(predictor.spec.imported.supports, values, "support")),)
-        edges = _released_edges(predictor, values)[0]
+        edges = released_edges(predictor.spec, values)[0]
         places = clamped_places(predictor, edges=edges)
         if (stretch := stretch_of(predictor.spec, edges, values)) is None:
             return places
@@ -252,81 +246,6 @@ class Clamp(Effect):
             return (at,)
         along = 1 if edges[0][0] == "x" else 0  # along the edge alone: another edge is a form of its own
         return tuple(one for one in mirror_images(predictor.spec, at) if one[1 - along] == at[1 - along])
-
-
-def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
-    """Return each of several clamps, and all of them alike; the one form there is where there is one clamp."""
-    clamped = predictor.spec.clamped
-    if len(clamped) < 2:
-        return (Variant(),)
-    alone = tuple(Variant({"support": edge}, (1 - ALIKE) / len(clamped)) for edge in clamped)
-    return (Variant({"support": ALL}, ALIKE), *alone)
-
-
-def _edges(predictor: Predictor) -> tuple[Variant, ...]:
-    """Return the clamps of a plate along their whole edges, and each along a part of its own."""
-    spec = predictor.spec
-    longest = _longest(spec)
-    whole = [
-        Variant({**form.values, "from": 0.0, "to": longest}, WHOLE_EDGE * form.weight)
-        for form in _clamps(predictor)
-    ]
-    share = (1 - WHOLE_EDGE) / max(len(spec.clamped), 1)
-    named = len(spec.clamped) > 1
-    return (*whole, *(Variant({"support": edge} if named else {}, share) for edge in spec.clamped))
-
-
-def edge_size(spec: Spec, edge: str) -> float:
-    """Return the length of an edge of a plate [m]."""
-    return spec.width if edge[0] == "x" else spec.length
-
-
-def _longest(spec: Spec) -> float:
-    """Return the length of the longest clamped edge of a plate, as far as the prior of a stretch reaches [m]."""
-    return max((edge_size(spec, edge) for edge in spec.clamped), default=0.0)
-
-
-def stretch_of(spec: Spec, edges: Sequence[str], values: Values) -> tuple[float, float] | None:
-    """Return from where to where along an edge a clamp gives way [m]; None along all of it.
-
-    Raises
-    ------
-    StudyError
-        If the stretch is off the edge, has no direction, or one of several edges is meant.
-    """
-    if spec.kind != "plate":
-        return None
-    size = min(edge_size(spec, edge) for edge in edges)
-    low, high = float(values.get("from", 0.0)), float(values.get("to", size))
-    if -OFF * size <= low <= 0.0 and size * (1 - OFF) <= high <= _longest(spec) * (1 + OFF):
-        return None
-    if len(edges) > 1:
-        raise StudyError(
-            f'from and to are places along one edge, and {", ".join(edges)} are clamped; add support = "{edges[0]}"'
-        )
-    if not -OFF * size <= low <= high <= (1 + OFF) * size:
-        raise StudyError(
-            f"from = {low:g} m, to = {high:g} m is no stretch of the edge {edges[0]}, from 0 to {size:g} m"
-        )
-    return max(low, 0.0), min(high, size)
-
-
-def _released_edges(predictor: Predictor, values: Values) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the clamped edges that give way, and those that hold.
-
-    Raises
-    ------
-    StudyError
-        If the one that is named is not clamped.
-    """
-    clamped, named = tuple(predictor.spec.clamped), str(values.get("support", ALL))
-    if named == ALL:
-        return clamped, ()
-    if named not in clamped:
-        raise StudyError(
-            f"support = {named!r} is not a clamped edge; those are {', '.join(clamped) or 'none'}"
-        )
-    return (named,), tuple(edge for edge in clamped if edge != named)
 
 
 class ClampRotation(Clamp):
