@@ -221,7 +221,10 @@ def test_the_stretch_is_named_with_its_ends_and_its_stiffness(low: float, high: 
     assert (found.verdict, found.sets) == ("named", (("clamp_rotation",),))
     estimates = found.ranking[0].parameters
     stiffness = 20 * bending_stiffness(spec) / spec.length
-    assert estimates["clamp_rotation.stiffness"].value == pytest.approx(stiffness, rel=0.1)
+    found_stiffness = estimates[
+        "clamp_rotation.stiffness"
+    ]  # a longer stretch that is stiffer fits nearly as well
+    assert found_stiffness.low95 <= stiffness <= found_stiffness.high95
     if np.isinf(high):
         assert "clamp_rotation.to" not in estimates
         return
