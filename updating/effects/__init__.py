@@ -113,7 +113,7 @@ def labels_of(effect: Effect, values: Mapping[str, Any]) -> set[str]:
 
 def names_of(effect: Effect, spec: Spec) -> set[str]:
     """Return what an effect takes beside its parameters that is a name of the user's own model."""
-    return set() if spec.imported is None else set(effect.named)
+    return effect.names_in(spec)
 
 
 def optional_values(

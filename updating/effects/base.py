@@ -266,6 +266,10 @@ class Effect(ABC):
             for p in self.parameters(predictor)
         ]
 
+    def names_in(self, spec: Spec) -> set[str]:
+        """Return which of ``named`` the effect takes on a model: all of imported matrices, as a rule."""
+        return set() if spec.imported is None else set(self.named)
+
     def sentence(self, values: Values) -> str:
         """Return the summary of the form with these values."""
         return self.summary

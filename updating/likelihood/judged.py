@@ -1,8 +1,8 @@
 """Doubts of which only the most is judged: how far damping scatters from mounting to mounting, how far filters turn.
 
-Nobody measured how far one test has them. What they may be at the most is judged; beside data that agree to a
-tenth of it, that is too large. So each channel has a share of it, the same for all its data, which is summed over. Where
-the data of a channel scatter as much as was judged, the share is one and nothing changes.
+Nobody measured how far one test has them. What they may be at the most is judged; beside data that agree to a tenth of
+it, that is too large. So each channel has a share of it, the same for all its data, which is summed over. Where the
+data of a channel scatter as much as was judged, the share is one and nothing changes.
 
 A channel whose nuisances are its own is integrated by itself, at all shares in one batch. One that shares nuisances
 with others keeps the most.

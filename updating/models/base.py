@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -83,11 +84,14 @@ class Structure(ABC):
         Its stiffness and mass, term by term.
     fixed : mapping of str to int array
         Degrees of freedom that a clamp holds and an effect may release, by kind.
+    along : mapping of str to int array
+        Of those the ones that one edge alone holds, by kind and edge, which an effect may release by themselves.
     """
 
     spec: Spec
     terms: Sequence[Term]
     fixed: Mapping[str, IntArray]
+    along: Mapping[str, IntArray] = MappingProxyType({})
     refinable: ClassVar[bool] = True
     """Whether it can be built again on another mesh, to see what its own leaves off."""
 
@@ -168,6 +172,8 @@ class Structure(ABC):
         held = [dofs for kind, dofs in self.fixed.items() if kind not in released]
         keep = np.ones(self.n_dofs, dtype=bool)
         keep[np.concatenate(held).astype(int) if held else np.zeros(0, dtype=int)] = False
+        for name in released & self.along.keys():
+            keep[self.along[name]] = True
         return np.flatnonzero(keep)
 
     def solve(self, loads: FloatArray, shift: float) -> FloatArray:

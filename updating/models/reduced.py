@@ -1,25 +1,29 @@
 """Re-analysis on a small basis that keeps every change a State can express.
 
 The basis holds the lowest modes of the nominal model, the static answers to softening each region and to
-loading each test point, and, behind them, what a clamp sets free when it is released. Matrices of any state
+loading each test point, and, behind them, what a clamp sets free when it is released, whole or, of a plate, along a
+part of an edge. Matrices of any state
 are sums of small precomputed ones, so a prediction costs one dense eigenproblem of some fifty unknowns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain, combinations
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from scipy import linalg as dense
 from scipy import sparse
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from acquisition.errors import StudyError
 from updating.models.absorbers import bordered
 from updating.models.base import FACTORS, Structure, Term, added, region_scales, scale_of, supports_at
+from updating.models.columns import columns_along, cut_off, extend_basis
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
@@ -27,9 +31,6 @@ from updating.models.terms import product
 
 ROTATION, TRANSLATION = frozenset({"rotation"}), frozenset({"translation"})
 """What a clamp may release."""
-
-ROUNDING = 1e-10
-"""What is left of a vector below this share is rounding [-]."""
 
 STATIC = float(np.finfo(float).eps) / 1e-6
 """Modes with a first eigenvalue over their own below this are static beside the first [-]: kept, they would round it by
@@ -88,12 +89,15 @@ class Reduced:
         where the translation alone is released, :meth:`matrices` holds the slopes that other columns have.
     changes : tuple of Change
         What a better theory changes of the whole.
+    lifts : mapping of str to slice
+        Columns that a part of an edge needs where it lets go, by kind and edge: ``rotation x0``.
     """
 
     structure: Structure
     basis: FloatArray
     ranks: Mapping[frozenset[str], int]
     changes: tuple[Change, ...] = ()
+    lifts: Mapping[str, slice] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def whole(self) -> bool:
@@ -200,6 +204,8 @@ class Reduced:
         stiffness, mass = total["stiffness"], total["mass"]
         if state.released == TRANSLATION:
             stiffness, mass = self._without_slopes(stiffness, mass)
+        if (idle := self._idle(state.released)) is not None:
+            stiffness, mass = cut_off(stiffness, mass, idle)
         if state.absorbers:
             stiffness = bordered(stiffness, state.absorbers, "stiffness")
             mass = bordered(mass, state.absorbers, "mass")
@@ -217,11 +223,24 @@ class Reduced:
     @cached_property
     def _slopes(self) -> tuple[FloatArray, FloatArray]:
         """Projections (r, r) on what has no slope at the clamps, and on the rest."""
-        slopes = self.basis[self.structure.fixed["rotation"]]
+        slopes = self.basis[self.structure.fixed["rotation"], : self.ranks[TRANSLATION]]
         _, size, directions = np.linalg.svd(slopes, full_matrices=False)
         turning = directions[size > 1e-8 * size[0]]
         rest = turning.T @ turning
         return np.eye(len(rest)) - rest, rest
+
+    def _idle(self, released: frozenset[str]) -> BoolArray | None:
+        """Mark the columns that a clamp with a released part leaves out, (r,); None where there is no such part.
+
+        A whole kind that is released beside one takes the columns of all edges, so that none are nearly alike.
+        """
+        if not released & self.lifts.keys() or released >= self.lifts.keys() | self.structure.fixed.keys():
+            return None
+        idle = np.arange(self.basis.shape[1]) >= self.ranks[frozenset()]
+        for name, columns in self.lifts.items():
+            if name in released or name.split()[0] in released:
+                idle[columns] = False
+        return idle
 
     @cached_property
     def sums(self) -> tuple[FloatArray, ...]:
@@ -318,10 +337,14 @@ class Reduced:
         Eigenvalues are not numbers where the state has lost its mass.
         """
         stiffness, mass = self.matrices(state)
+        used = np.ones(len(mass), dtype=bool)
+        if (idle := self._idle(state.released)) is not None:
+            used[: len(idle)] = ~idle
+        vectors = np.eye(len(mass))[:, used]
         try:
-            values, vectors = dense.eigh(stiffness, mass)
+            values, vectors[used] = dense.eigh(stiffness[np.ix_(used, used)], mass[np.ix_(used, used)])
         except dense.LinAlgError:  # a mass that is not positive
-            return np.full(len(mass), np.nan), np.eye(len(mass))
+            return np.full(used.sum(), np.nan), vectors
         return values, vectors
 
 
@@ -364,26 +387,20 @@ def reduce_structure(
             basis = extend_basis(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
             ranks[released] = basis.shape[1]
         ranks[TRANSLATION] = basis.shape[1]
-    return Reduced(structure, basis, ranks)
+    return _with_parts(structure, Reduced(structure, basis, ranks), mass)
 
 
-def extend_basis(
-    basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: float = 1e-9
-) -> FloatArray:
-    """Append the directions of ``extra`` that ``basis`` lacks, orthonormal in the mass."""
-    before = np.einsum("ij,ij->j", extra, mass @ extra)
-    for _ in range(2):
-        extra = extra - basis @ (basis.T @ (mass @ extra))
-    extra = extra[:, np.einsum("ij,ij->j", extra, mass @ extra) > ROUNDING**2 * before]
-    if not extra.shape[1]:
-        return basis
-    gram = extra.T @ (mass @ extra)
-    scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
-    values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
-    keep = values > tolerance * max(values.max(), 1e-300)
-    new = (extra / scale) @ (vectors[:, keep] / np.sqrt(values[keep]))
-    new = new - basis @ (basis.T @ (mass @ new))
-    return np.hstack([basis, new])
+def _with_parts(structure: Structure, reduced: Reduced, mass: Sparse) -> Reduced:
+    """Return a plate's model with columns behind the others for parts of its clamped edges that let go."""
+    if not isinstance(structure, FieldStructure) or not structure.along:
+        return reduced
+    clamped, behind = reduced.basis[:, : reduced.ranks[frozenset()]], reduced.basis.shape[1]
+    columns, lifts = columns_along(structure, clamped, mass, behind)
+    basis = np.hstack([reduced.basis, columns])
+    kinds = [*structure.fixed, *lifts]
+    sets = chain.from_iterable(combinations(kinds, n) for n in range(1, len(kinds) + 1))
+    ranks = {frozenset(s): basis.shape[1] for s in sets} | dict(reduced.ranks)
+    return Reduced(structure, basis, ranks, lifts=MappingProxyType(lifts))
 
 
 def _static_answers(
@@ -417,4 +434,4 @@ def _released_shapes(
     return np.hstack(shapes)
 
 
-__all__ = ["FACTORS", "Reduced", "reduce_structure"]
+__all__ = ["FACTORS", "Reduced", "extend_basis", "reduce_structure"]

@@ -43,7 +43,7 @@ class Sheared(Reduced):
 
     Parameters
     ----------
-    structure, basis, ranks, changes
+    structure, basis, ranks, changes, lifts
         As of :class:`Reduced`.
     thin : Reduced
         The thin plate.
@@ -86,12 +86,13 @@ def sheared(reduced: Reduced) -> Reduced:
         The thin plate.
     """
     if "thick plate" not in reduced.kept:
-        reduced.kept["thick plate"] = _changes(reduced.fielded, reduced.basis)
+        reduced.kept["thick plate"] = _changes(reduced)
     changes = reduced.kept["thick plate"]
-    return Sheared(reduced.structure, reduced.basis, reduced.ranks, changes, thin=reduced)
+    return Sheared(reduced.structure, reduced.basis, reduced.ranks, changes, reduced.lifts, thin=reduced)
 
 
-def _changes(structure: FieldStructure, basis: FloatArray) -> tuple[Change, ...]:
+def _changes(reduced: Reduced) -> tuple[Change, ...]:
+    structure, basis = reduced.fielded, reduced.basis
     spec = structure.spec
     thick = _thick(spec.with_theory("mindlin"))
     own = structure.fields.components[0].hermite(thick.fields.points, structure.n_dofs, PLATE_NAMES)
@@ -101,14 +102,32 @@ def _changes(structure: FieldStructure, basis: FloatArray) -> tuple[Change, ...]
     shift = SHIFT * float(stiffness[first, first]) if first else 0.0
     residual = _residual(thick, thin)
     excess = residual.T @ thick.solve(residual, shift)
-    held = stiffness + excess + shift * np.eye(len(stiffness))
-    softer = -excess @ np.linalg.solve(held, stiffness)
+    softer = _softer(reduced, stiffness, excess, shift)
     turning = [
         Change("mass", _product(t, thin[t.left.replace("r", "w")], thin[t.right.replace("r", "w")]), t.powers)
         for t in thick.terms
         if t.kind == "mass" and t.left != "w"
     ]
-    return (Change("stiffness", (softer + softer.T) / 2, POWERS), *turning)
+    return (Change("stiffness", softer, POWERS), *turning)
+
+
+def _softer(reduced: Reduced, stiffness: FloatArray, excess: FloatArray, shift: float) -> FloatArray:
+    """Return what the excess of the compliance takes off the stiffness, (r, r) [SI].
+
+    Columns of parts of edges stand beside those of the clamped plate alone: beside whole edges they are nearly alike.
+    """
+    places = np.arange(len(stiffness))
+    lifted = np.zeros(len(stiffness), dtype=bool)
+    for columns in reduced.lifts.values():
+        lifted[columns] = True
+    softer = np.zeros_like(stiffness)
+    beside = lifted | (places < reduced.ranks[frozenset()])
+    for chosen in (beside, ~lifted) if lifted.any() else (~lifted,):
+        here = np.ix_(chosen, chosen)
+        held = stiffness[here] + excess[here] + shift * np.eye(int(chosen.sum()))
+        change = -excess[here] @ np.linalg.solve(held, stiffness[here])
+        softer[here] = (change + change.T) / 2
+    return softer
 
 
 def _thick(spec: Spec) -> FieldStructure:

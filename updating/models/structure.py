@@ -53,6 +53,8 @@ class FieldStructure(Structure):
         Region in which each quadrature point lies, -1 for none.
     fixed : mapping of str to int array
         Degrees of freedom that a clamp holds: its ``translation`` and its ``rotation``.
+    along : mapping of str to int array
+        Of plates those that one clamped edge alone holds, by kind and edge: ``rotation x0``.
     """
 
     spec: Spec
@@ -60,6 +62,7 @@ class FieldStructure(Structure):
     terms: tuple[FieldTerm, ...]
     region_of: IntArray
     fixed: Mapping[str, IntArray] = field(default_factory=lambda: MappingProxyType({}))
+    along: Mapping[str, IntArray] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def n_dofs(self) -> int:
@@ -206,24 +209,47 @@ def build_field_structure(spec: Spec) -> FieldStructure:
     terms = (
         plate_terms(spec, fields, region_of) if spec.kind == "plate" else beam_terms(spec, fields, region_of)
     )
-    return FieldStructure(spec, fields, terms, region_of, clamped_dofs(spec, fields))
+    return FieldStructure(
+        spec, fields, terms, region_of, clamped_dofs(spec, fields), dofs_along(spec, fields)
+    )
 
 
 def clamped_dofs(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:
     """Sort the degrees of freedom of the clamped edges into what holds translation and what rotation."""
     if not spec.clamped:
         return MappingProxyType({})
+    edges = [_held_by(spec, fields, edge) for edge in spec.clamped]
+    return MappingProxyType(
+        {kind: np.unique(np.concatenate([edge[kind] for edge in edges])) for kind in edges[0]}
+    )
+
+
+def dofs_along(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:
+    """Return which degrees of freedom each clamped edge of a plate alone holds, by ``"rotation x0"`` and the like."""
+    if spec.kind != "plate":
+        return MappingProxyType({})
+    own = {
+        f"{kind} {edge}": dofs for edge in spec.clamped for kind, dofs in _held_by(spec, fields, edge).items()
+    }
+    found = {}
+    for name, dofs in own.items():
+        others = [np.zeros(0, dtype=dofs.dtype), *(held for other, held in own.items() if other != name)]
+        found[name] = np.setdiff1d(dofs, np.concatenate(others))
+    return MappingProxyType(found)
+
+
+def _held_by(spec: Spec, fields: Fields, edge: str) -> dict[str, IntArray]:
+    """Return the degrees of freedom by which a clamped edge holds translation, and those by which rotation."""
     held: dict[str, list[IntArray]] = {"translation": [], "rotation": []}
     shears = spec.theory in ("timoshenko", "mindlin")
-    for edge in spec.clamped:
-        axis, end = "xy".index(edge[0]), int(edge[1])
-        normal = "u_x" if axis == 0 else "u_y"
-        for number, component in enumerate(fields.components):
-            place = component.basis.mesh.p[axis].max() if end else component.basis.mesh.p[axis].min()
-            found = component.basis.get_dofs(lambda p, a=axis, at=place: np.isclose(p[a], at))
-            for name, dofs in [*found.nodal.items(), *found.facet.items()]:
-                if number == 0 and shears and name in (normal, "u_xy"):
-                    continue  # the slope of the displacement across a clamp is the shear strain there, and free
-                turns = number == 1 + axis if number else name in (normal, "u_xy")
-                held["rotation" if turns else "translation"].append(np.asarray(dofs) + component.offset)
-    return MappingProxyType({k: np.unique(np.concatenate(v)) for k, v in held.items()})
+    axis, end = "xy".index(edge[0]), int(edge[1])
+    normal = "u_x" if axis == 0 else "u_y"
+    for number, component in enumerate(fields.components):
+        place = component.basis.mesh.p[axis].max() if end else component.basis.mesh.p[axis].min()
+        found = component.basis.get_dofs(lambda p, a=axis, at=place: np.isclose(p[a], at))
+        for name, dofs in [*found.nodal.items(), *found.facet.items()]:
+            if number == 0 and shears and name in (normal, "u_xy"):
+                continue  # the slope of the displacement across a clamp is the shear strain there, and free
+            turns = number == 1 + axis if number else name in (normal, "u_xy")
+            held["rotation" if turns else "translation"].append(np.asarray(dofs) + component.offset)
+    return {kind: np.unique(np.concatenate(dofs)) for kind, dofs in held.items()}

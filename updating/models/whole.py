@@ -46,7 +46,7 @@ class Whole(Reduced):
     def of(cls, small: Reduced) -> Whole:
         """Take the structure of a reduced model."""
         structure = small.structure
-        kinds = sorted(structure.fixed)
+        kinds = sorted([*structure.fixed, *structure.along])
         sets = chain.from_iterable(combinations(kinds, n) for n in range(len(kinds) + 1))
         every = sparse.eye_array(structure.n_dofs, format="csr")
         ranks = {frozenset(s): structure.n_dofs for s in sets}

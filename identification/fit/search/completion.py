@@ -119,15 +119,19 @@ def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[f
 def _higher(
     frfs: FrfSet, fit: Fit, weights: Weights, ladder: tuple[tuple[int, ...], ...]
 ) -> tuple[tuple[int, ...], float]:
-    """Return the next set of residual terms, and by how much more than noise it explains."""
-    rung = ladder.index(fit.linear.powers)
-    if rung + 1 == len(ladder):
-        return fit.linear.powers, 0.0
-    extra = (len(ladder[rung + 1]) - len(ladder[rung])) * len(frfs.values)
-    here = evaluate(frfs, fit.poles, weights, fit.linear.powers).cost
-    there = evaluate(frfs, fit.poles, weights, ladder[rung + 1]).cost
-    gain = 2.0 * (here - there) / window_shaped.at_start(weights.fade)
-    return ladder[rung + 1], gain - float(stats.chi2.isf(1e-6, extra))
+    """Return the best of the next larger sets of residual terms, and by how much more than noise it explains."""
+    now = fit.linear.powers
+    larger = [powers for powers in ladder if set(powers) > set(now)]
+    size = min(map(len, larger), default=0)
+    here = evaluate(frfs, fit.poles, weights, now).cost if larger else 0.0
+    best, most = now, 0.0
+    for powers in (one for one in larger if len(one) == size):
+        there = evaluate(frfs, fit.poles, weights, powers).cost
+        gain = 2.0 * (here - there) / window_shaped.at_start(weights.fade)
+        gain -= float(stats.chi2.isf(1e-6, (size - len(now)) * len(frfs.values)))
+        if gain > most:
+            best, most = powers, gain
+    return best, most
 
 
 def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:

@@ -128,7 +128,7 @@ def _springs_of(joint: Joint, parameter: str, own: float) -> Callable[[float, fl
 
 def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     """Each support in each direction in which it holds; the severity is its compliance."""
-    (stiffness,) = effect.parameters(predictor)
+    stiffness = next(p for p in effect.parameters(predictor) if p.name == "stiffness")
     imported = predictor.spec.imported
     turns = effect.name == "clamp_rotation"
     ways: list[tuple[str, Support | None, int]] = [(effect.name, None, 0)]

@@ -110,6 +110,11 @@ def _turning(body: Body, stiffness: float) -> Body:
     return replace(body, clamp_rotation=stiffness)  # type: ignore[type-var]
 
 
+def _stretch(values: Values) -> Values:
+    """Return from where to where along the edges of a plate they give way, where the values say so [m]."""
+    return {f"clamp_{name}": values[name] for name in ("from", "to") if name in values}
+
+
 def can_show_levels(setup: Setup) -> bool:
     """Return whether hits of one point span some two to one in force."""
     return setup.level_scatter >= 0.3 and setup.hits >= 4
@@ -124,7 +129,7 @@ SUPPORTS = (
     HiddenEffect(
         "clamp_rotation",
         _draw_rotation,
-        lambda scene, values: scene.with_body(clamp_rotation=values["stiffness"]),
+        lambda scene, values: scene.with_body(clamp_rotation=values["stiffness"], **_stretch(values)),
         applies=is_clamped,
         places=clamped_places,
         exclusive="clamp",
@@ -133,7 +138,7 @@ SUPPORTS = (
     HiddenEffect(
         "clamp_translation",
         _draw_translation,
-        lambda scene, values: scene.with_body(clamp_translation=values["stiffness"]),
+        lambda scene, values: scene.with_body(clamp_translation=values["stiffness"], **_stretch(values)),
         applies=is_clamped,
         places=clamped_places,
         share=0.74,

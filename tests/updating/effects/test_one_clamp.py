@@ -52,7 +52,7 @@ def test_all_clamps_alike_and_each_alone_are_forms_with_places_of_their_own() ->
 
 
 def test_an_edge_that_is_free_cannot_be_named() -> None:
-    with pytest.raises(StudyError, match="no clamped edge; those are x0, x1"):
+    with pytest.raises(StudyError, match="not a clamped edge; those are x0, x1"):
         frequencies("y0", 1.0)
 
 

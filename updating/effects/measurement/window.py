@@ -21,7 +21,9 @@ class ExponentialWindow(Effect):
     models = ("beam", "plate", "matrices")
     phrase = "an exponential window left in the data"
     equivalent_to = ("uniform_damping",)
-    separated_by = "phases of low modes and the noise of the hits; else the analyser's settings, or a repeat with another window"
+    separated_by = (
+        "phases of low modes and the noise of the hits; else the analyser's settings, or a repeat with another window"
+    )
 
     def damps(self, parameter: str = "") -> bool:
         """State that a decay is no frequency."""

@@ -1,4 +1,4 @@
-"""Clamps that give: in rotation, in translation, or in a pair of effects in both."""
+"""Clamps that give: in rotation, in translation, or in a pair of effects in both; of plates along a part of an edge."""
 
 from __future__ import annotations
 
@@ -9,15 +9,26 @@ import numpy as np
 from scipy import sparse
 
 from acquisition.arrays import FloatArray
-from acquisition.errors import StudyError
-from updating.effects.base import Effect, Parameter, Values, Variant, bending_stiffness
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness
+from updating.effects.box import mirror_images
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import WAYS, centre_of, one_of, way
+from updating.effects.structure.clamp_edges import (
+    ALL,
+    clamps_and_stretches,
+    edge_size,
+    longest,
+    released_edges,
+    stretch_of,
+    whole_clamps,
+)
+from updating.effects.structure.edge_stretch import on_a_stretch
 from updating.effects.structure.length import clamped_places
 from updating.effects.structure.spring import own_stiffness
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.groups import Support
+from updating.models.spec import Spec
 from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.models.yielding import Yielding
@@ -29,13 +40,6 @@ NOT_HELD = (
 )
 """Why supports of imported matrices cannot give way."""
 
-ALL = "all"
-"""Name of all clamps together, which give way alike, and of all directions in which a support holds."""
-
-ALIKE = 0.5
-"""Prior share of all clamps alike among the clamps of a structure that has several: made and tightened alike, or one of
-them loose. Doubled, one alone is out of the question."""
-
 EVERY_WAY = 0.5
 """Prior share of a support that gives way alike in all directions of its kind, where it holds in several [-]: rubber,
 or a loose bolt, as against a slide or a hinge. Judged; doubled, one direction alone is out of the question."""
@@ -44,9 +48,20 @@ RIGID = 1e7
 """Stiffness of a clamp that holds beside one that gives way, in natural units [-]: it moves frequencies by a hundred
 thousandth. A hundred times as much costs the eigenvalues as many digits as it gains."""
 
+STRETCHES = ((0.0, 0.5), (1.0, 0.5), (0.5, 0.5), (0.0, 0.25), (1.0, 0.25))
+"""Stretches of an edge from which a search starts: place and length, as quantiles [-]. Each half, the middle and both
+ends: what is shorter is found from these."""
+
+SIZES = (0.3, 0.7)
+"""Quantiles of the stiffness from which a search starts [-]."""
+
 
 class Clamp(Effect):
-    """A spring in place of a built-in edge."""
+    """A spring in place of a built-in edge.
+
+    On plates it acts ``from`` one place ``to`` another along the edge, by y of an edge of constant x; the rest of the
+    edge holds. The prior takes any length and any place, each alike.
+    """
 
     channel = "stiffness"
     models = ("beam", "plate", "matrices")
@@ -62,16 +77,63 @@ class Clamp(Effect):
     span: ClassVar[tuple[float, float]]
     """Range of the prior, in natural units."""
     why: ClassVar[str]
+    firm: ClassVar[float]
+    """Stiffness of an edge that holds beside a stretch that gives way, in natural units: what is stiffer costs the
+    eigenvalues digits, what is softer moves frequencies by more than a hundred thousandth [-]."""
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return the spring's stiffness, per metre of edge on plates."""
+        """Return the spring's stiffness, per metre of edge on plates, and there from where to where it acts."""
         spec = predictor.spec
         if spec.imported is None:
             scale = bending_stiffness(spec) / spec.length**self.power
         else:
             scale = own_stiffness(predictor) * spec.imported.reach ** (3 - self.power)
         unit = self.units[spec.kind == "plate"]
-        return (Parameter("stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True),)
+        stiffness = Parameter(
+            "stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True
+        )
+        if spec.kind != "plate" or not spec.clamped:
+            return (stiffness,)
+        size = longest(spec)
+        why = "any stretch of the clamped edge, its length and its place alike probable"
+        ends = (("from", 0.0), ("to", size))
+        return (
+            stiffness,
+            *(Parameter(name, "m", 0.0, size, why, default=end, natural=EDGES) for name, end in ends),
+        )
+
+    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
+        """Take prior quantiles to values: on plates those of the place and of the length of the stretch."""
+        values = super().values(predictor, coordinates)
+        if "to" in values:
+            size, (place, length) = longest(predictor.spec), coordinates[1:]
+            values["from"] = place * (1 - length) * size
+            values["to"] = values["from"] + length * size
+        return values
+
+    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
+        """Take values to prior quantiles."""
+        found = super().quantiles(predictor, values)
+        if len(found) > 1 and "to" in values and "from" in values:
+            size = longest(predictor.spec)
+            length = float(np.clip((values["to"] - values["from"]) / size, 0.0, 1.0))
+            place = values["from"] / size / max(1 - length, 1e-9)
+            found[1:] = [float(np.clip(place, 0.0, 1.0)), length]
+        return found
+
+    def settled(self, predictor: Predictor, values: Values) -> Values:
+        """Return the values with a stretch of the longest edge, as the prior has it, on the edge that is meant."""
+        edge = values.get("support", ALL)
+        if "to" not in values or edge == ALL:
+            return values
+        share = edge_size(predictor.spec, str(edge)) / longest(predictor.spec)
+        return {**values, "from": values["from"] * share, "to": values["to"] * share}
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from little and much stiffness, on plates of some stretches of the edge."""
+        if len(self.parameters(predictor)) == 1:
+            return super().starts(predictor)
+        return tuple((size, *stretch) for stretch in STRETCHES for size in SIZES)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need a clamp."""
@@ -79,14 +141,29 @@ class Clamp(Effect):
             return None if predictor.spec.imported.supports else Obstacle(Lack.MODEL, NOT_HELD)
         return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
+    def names_in(self, spec: Spec) -> set[str]:
+        """Return that one of several clamped edges may be named, and a support of imported matrices."""
+        return (
+            super().names_in(spec)
+            if spec.imported is not None
+            else {"support"}
+            if len(spec.clamped) > 1
+            else set()
+        )
+
     def repeats_on(self, predictor: Predictor) -> bool:
         """State that two feet may give way, or one foot in two directions; the clamps of a beam are one form each."""
         return predictor.spec.imported is not None
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return the forms: all clamps alike, and each alone; of imported matrices each support in each direction."""
+        """Return the forms: all clamps alike, and each alone; of imported matrices each support in each direction.
+
+        Of plates along the whole edge, and along any part of each edge.
+        """
+        if predictor.spec.kind == "plate":
+            return clamps_and_stretches(predictor.spec)
         if predictor.spec.imported is None:
-            return _clamps(predictor)
+            return whole_clamps(predictor.spec)
         supports = predictor.spec.imported.supports
         forms = [form for support in supports for form in self._ways(support)]
         whole = sum(form.weight for form in forms)
@@ -108,10 +185,13 @@ class Clamp(Effect):
 
     def sentence(self, values: Values) -> str:
         """Return the summary, and which support in which direction."""
+        along = ""
+        if "from" in values and "to" in values:
+            along = f" It does so along the edge from {values['from']:.3g} to {values['to']:.3g} m; the rest holds."
         if values.get("support", ALL) == ALL:
-            return self.summary
+            return self.summary + along
         if "direction" not in values:
-            return f"{self.summary} It is the one at {values['support']}."
+            return f"{self.summary} It is the one at {values['support']}.{along}"
         way = str(values["direction"])
         towards = "alike in all directions" if way == ALL else way.replace("r", "about ")
         return f"{self.summary} It is {values['support']}, {towards}."
@@ -125,7 +205,10 @@ class Clamp(Effect):
         if predictor.spec.imported is not None:
             support = one_of(predictor.spec.imported.supports, values, "support")
             return State(yielding={support.name: self._yielding(predictor, support, values)})
-        own, others = _released_edges(predictor, values)
+        own, others = released_edges(predictor.spec, values)
+        if (stretch := stretch_of(predictor.spec, own, values)) is not None:
+            firm = self.firm * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
+            return on_a_stretch(predictor, self.freed, own[0], stretch, float(values["stiffness"]), firm)
         held = values["stiffness"] * unit_edges(predictor, self.freed, own)
         if others:
             firm = RIGID * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
@@ -153,34 +236,16 @@ class Clamp(Effect):
         """Return the clamped edges that give way, or the support."""
         if predictor.spec.imported is not None:
             return (centre_of(one_of(predictor.spec.imported.supports, values, "support")),)
-        return clamped_places(predictor, edges=_released_edges(predictor, values)[0])
-
-
-def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
-    """Return each of several clamps, and all of them alike; the one form there is where there is one clamp."""
-    clamped = predictor.spec.clamped
-    if len(clamped) < 2:
-        return (Variant(),)
-    alone = tuple(Variant({"support": edge}, (1 - ALIKE) / len(clamped)) for edge in clamped)
-    return (Variant({"support": ALL}, ALIKE), *alone)
-
-
-def _released_edges(predictor: Predictor, values: Values) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the clamped edges that give way, and those that hold.
-
-    Raises
-    ------
-    StudyError
-        If the one that is named is not clamped.
-    """
-    clamped, named = tuple(predictor.spec.clamped), str(values.get("support", ALL))
-    if named == ALL:
-        return clamped, ()
-    if named not in clamped:
-        raise StudyError(
-            f"support = {named!r} is not a clamped edge; those are {', '.join(clamped) or 'none'}"
-        )
-    return (named,), tuple(edge for edge in clamped if edge != named)
+        edges = released_edges(predictor.spec, values)[0]
+        places = clamped_places(predictor, edges=edges)
+        if (stretch := stretch_of(predictor.spec, edges, values)) is None:
+            return places
+        (x, y, z), middle = places[0], sum(stretch) / 2
+        at = (x, middle, z) if edges[0][0] == "x" else (middle, y, z)
+        if predictor.measured.has_shapes:
+            return (at,)
+        along = 1 if edges[0][0] == "x" else 0  # along the edge alone: another edge is a form of its own
+        return tuple(one for one in mirror_images(predictor.spec, at) if one[1 - along] == at[1 - along])
 
 
 class ClampRotation(Clamp):
@@ -196,6 +261,7 @@ class ClampRotation(Clamp):
     phrase = "a clamp that rotates"
     freed = "rotation"
     power = 1
+    firm = 1e5
     units = ("N m/rad", "N m/rad per m")
     span = (1.0, 2000.0)
     why = "from nearly a hinge to 2000 times the structure's own E I / L, where it is undetectable"
@@ -212,6 +278,7 @@ class ClampTranslation(Clamp):
     phrase = "a clamp that gives way"
     freed = "translation"
     power = 3
+    firm = 1e8
     units = ("N/m", "N/m per m")
     span = (5.0, 1e7)
     why = (

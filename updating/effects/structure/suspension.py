@@ -11,7 +11,7 @@ from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, tot
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import WAYS, on_basis, one_of, way
-from updating.effects.structure.clamp import ALL
+from updating.effects.structure.clamp_edges import ALL
 from updating.effects.structure.spring import LOSSY, SLIPS, lowest, springs
 from updating.models.fields import Sparse
 from updating.models.imported.cords import Cords

@@ -10,6 +10,9 @@ from modalkit.simulator.bodies.plate.grid import Grid, gauss_line
 
 Sparse = scipy.sparse.csr_array
 
+_ON = 1e-9
+"""So near to the end of a stretch a node is on it [m]."""
+
 
 def on_edge(grid: Grid, edge: str) -> BoolArray:
     """Return which nodes lie on the edge ``x0``, ``x1``, ``y0`` or ``y1``."""
@@ -17,7 +20,13 @@ def on_edge(grid: Grid, edge: str) -> BoolArray:
     return np.asarray(np.abs(places - (lines[0] if edge[1] == "0" else lines[-1])) < 1e-9)
 
 
-def free_motions(grid: Grid, edges: tuple[str, ...], *, shift: bool, turn: bool) -> Sparse:
+WHOLE = (-np.inf, np.inf)
+"""All along an edge [m]."""
+
+
+def free_motions(
+    grid: Grid, edges: tuple[str, ...], *, shift: bool, turn: bool, stretch: tuple[float, float] = WHOLE
+) -> Sparse:
     """Return what the held edges leave: columns of motions in all DOFs.
 
     Parameters
@@ -29,6 +38,8 @@ def free_motions(grid: Grid, edges: tuple[str, ...], *, shift: bool, turn: bool)
     shift, turn : bool
         Whether they may move, and rotate about themselves, on springs. Where they do not move they do not
         rotate across either.
+    stretch : (low, high)
+        Along the edges, between which places they may do so [m].
 
     Returns
     -------
@@ -40,9 +51,15 @@ def free_motions(grid: Grid, edges: tuple[str, ...], *, shift: bool, turn: bool)
     for edge in edges:
         here = on_edge(grid, edge)
         normal = 1 if edge[0] == "x" else 2
-        fixed[here, 0] |= not shift
-        fixed[here, normal] |= not turn
-        fixed[here, 3 - normal] |= not shift
+        along = grid.nodes[1 if edge[0] == "x" else 0]
+        low, high = (
+            stretch[0] > along.min() + _ON,
+            stretch[1] < along.max() - _ON,
+        )  # what reaches a corner frees it
+        firm = (low & (along <= stretch[0] + _ON)) | (high & (along >= stretch[1] - _ON))
+        fixed[here & (firm | (not shift)), 0] = True
+        fixed[here & (firm | (not turn)), normal] = True
+        fixed[here & (firm | (not shift)), 3 - normal] = True
         if edge == "x0" and grid.slant:
             angle = np.arctan(grid.slant)
             others = np.any(
@@ -61,7 +78,14 @@ def free_motions(grid: Grid, edges: tuple[str, ...], *, shift: bool, turn: bool)
     return kept
 
 
-def edge_springs(grid: Grid, edges: tuple[str, ...], *, shift: float, turn: float) -> Sparse:
+def edge_springs(
+    grid: Grid,
+    edges: tuple[str, ...],
+    *,
+    shift: float,
+    turn: float,
+    stretch: tuple[float, float] = WHOLE,
+) -> Sparse:
     """Return the stiffness of springs along edges.
 
     Parameters
@@ -72,6 +96,8 @@ def edge_springs(grid: Grid, edges: tuple[str, ...], *, shift: float, turn: floa
         Where.
     shift, turn : float
         Against moving [N/m2] and rotating [N] per metre of edge; infinite ones are left out.
+    stretch : (low, high)
+        Along the edges, between which places they are [m].
 
     Returns
     -------
@@ -81,6 +107,8 @@ def edge_springs(grid: Grid, edges: tuple[str, ...], *, shift: float, turn: floa
     whole = Sparse((3 * grid.count, 3 * grid.count))
     for edge in edges:
         x, y, weight, normal = _edge_line(grid, edge)
+        along = y if edge[0] == "x" else x
+        weight = weight * ((along > stretch[0]) & (along < stretch[1]))
         read = grid.read(x, y)
         move = read.rows({0: read.value}, 3 * grid.count)
         rotate = read.rows({1: normal[0] * read.value, 2: normal[1] * read.value}, 3 * grid.count)

@@ -45,6 +45,8 @@ class PlateFields:
     clamp_rotation, clamp_translation : float
         Stiffness of the held edges per metre, [N m/rad/m] and [N/m/m]; the edge that shifts goes on holding the
         slope.
+    clamp_from, clamp_to : float
+        From where to where along each held edge it gives way, in the model's axes; the rest of the edge holds [m].
     skew : float
         Angle between the edge x0 and the y axis about its middle, positive towards +x at y1 [rad].
     ratio : float
@@ -99,6 +101,8 @@ class PlateFields:
     side: float = 0.0
     clamp_rotation: float = np.inf
     clamp_translation: float = np.inf
+    clamp_from: float = -np.inf
+    clamp_to: float = np.inf
     skew: float = 0.0
     ratio: float = 1.0
     shear_ratio: float = 1.0
@@ -145,6 +149,11 @@ class PlateFields:
         return self.E * self.thickness**3 / (12 * (1 - self.poisson**2))
 
     @property
+    def gives_way(self) -> tuple[float, float]:
+        """From where to where along the held edges they give way [m]."""
+        return self.clamp_from, self.clamp_to
+
+    @property
     def gradients(self) -> tuple[str, ...]:
         """The slopes along both axes."""
         return ("slope_x", "slope_y")
@@ -178,7 +187,10 @@ class PlateFields:
             elements=self.mesh[axis],
             layer=_LAYER * self.thickness,
             windows=tuple(s.windows("xy"[axis]) for s in spots),
-            lines=tuple(r.start[axis] for r in self.ribs if abs(r.direction[axis]) < 1e-9),
+            lines=(
+                *(r.start[axis] for r in self.ribs if abs(r.direction[axis]) < 1e-9),
+                *(at for at in self.gives_way if any(edge[0] != "xy"[axis] for edge in self.clamped)),
+            ),
         )
 
     @cached_property

@@ -118,7 +118,8 @@ class Plate(PlateFields):
         if self.axial or self.axial_across:
             whole = whole + plate_matrices.load_matrix(self.grid, self.load, self.axial_across / self.length)
         springs = {"shift": self.clamp_translation, "turn": self.clamp_rotation}
-        whole = self._padded(whole + plate_edges.edge_springs(self.grid, self.clamped, **springs))
+        edges = plate_edges.edge_springs(self.grid, self.clamped, **springs, stretch=self.gives_way)
+        whole = self._padded(whole + edges)
         if self.attached or self.absorbers:
             rows = self._relative_rows("stiffness")
             whole = whole + rows.T @ rows
@@ -261,7 +262,7 @@ class Plate(PlateFields):
     def _local_modes(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Return the modes without what spans the whole plate."""
         free = {"shift": np.isfinite(self.clamp_translation), "turn": np.isfinite(self.clamp_rotation)}
-        motions = plate_edges.free_motions(self.grid, self.clamped, **free)
+        motions = plate_edges.free_motions(self.grid, self.clamped, **free, stretch=self.gives_way)
         kept = self._padded(motions, [1.0] * len(self._hanging))
         added = None
         if self.fluid_density:
