@@ -29,6 +29,7 @@ from identification.fit.search.completion import (
     completed,
     find_split_mode,
     pruned,
+    with_odd_term,
     without_split_modes,
 )
 
@@ -134,7 +135,8 @@ def fit_candidates(
     while find_split_mode(fitted.frfs, fitted.fit) is not None:
         fit = without_split_modes(fitted.frfs, fitted.fit)
         fitted = _weighted(frfs, fit, fitted.drift, band)
-    return fitted
+    fit = with_odd_term(fitted.frfs, fitted.fit, band)  # where FRFs disagree, the term would take that
+    return fitted if fit is fitted.fit else _weighted(frfs, fit, fitted.drift, band)
 
 
 def with_named(fitted: Fitted, add: Sequence[float], *, band: tuple[float, float]) -> Fitted:

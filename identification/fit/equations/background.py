@@ -51,11 +51,7 @@ def gains(
 
 
 def term_ladder(band: tuple[float, float]) -> tuple[tuple[int, ...], ...]:
-    """Return sets of residual terms, the least first; low powers only where the band is clear of zero.
-
-    Modes beyond the band whose residues are not imaginary, as of complex modes or under a window that nobody stated,
-    leave odd powers: 1/s those below, s those above.
-    """
+    """Return sets of residual terms of growing size; low powers only where the band is clear of zero."""
     if band[0] > 0.1 * band[1]:
         return ((-2, 0), (-3, -2, -1, 0, 1), (-4, -3, -2, -1, 0, 1, 2))
-    return ((-2, 0), (-2, -1, 0, 1), (-2, 0, 1, 2), (-2, -1, 0, 1, 2), (-2, -1, 0, 1, 2, 3, 4))
+    return ((-2, 0), (-2, 0, 1, 2), (-2, 0, 1, 2, 3, 4))

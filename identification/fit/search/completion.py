@@ -119,19 +119,34 @@ def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[f
 def _higher(
     frfs: FrfSet, fit: Fit, weights: Weights, ladder: tuple[tuple[int, ...], ...]
 ) -> tuple[tuple[int, ...], float]:
-    """Return the best of the next larger sets of residual terms, and by how much more than noise it explains."""
-    now = fit.linear.powers
-    larger = [powers for powers in ladder if set(powers) > set(now)]
-    size = min(map(len, larger), default=0)
-    here = evaluate(frfs, fit.poles, weights, now).cost if larger else 0.0
-    best, most = now, 0.0
-    for powers in (one for one in larger if len(one) == size):
-        there = evaluate(frfs, fit.poles, weights, powers).cost
-        gain = 2.0 * (here - there) / window_shaped.at_start(weights.fade)
-        gain -= float(stats.chi2.isf(1e-6, (size - len(now)) * len(frfs.values)))
-        if gain > most:
-            best, most = powers, gain
-    return best, most
+    """Return the next set of residual terms, and by how much more than noise it explains."""
+    rung = ladder.index(fit.linear.powers)
+    if rung + 1 == len(ladder):
+        return fit.linear.powers, 0.0
+    return ladder[rung + 1], _explained(frfs, fit, weights, ladder[rung + 1])
+
+
+def _explained(frfs: FrfSet, fit: Fit, weights: Weights, powers: tuple[int, ...]) -> float:
+    """Return by how much more than noise a larger set of residual terms explains, poles held [-]."""
+    here = evaluate(frfs, fit.poles, weights, fit.linear.powers).cost
+    there = evaluate(frfs, fit.poles, weights, powers).cost
+    gain = 2.0 * (here - there) / window_shaped.at_start(weights.fade)
+    return gain - float(stats.chi2.isf(1e-6, (len(powers) - len(fit.linear.powers)) * len(frfs.values)))
+
+
+def with_odd_term(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fit:
+    """Return a fit with a residual term in 1/s, if that explains more than noise can.
+
+    Modes whose residues are not imaginary leave one: complex modes beyond the band, and all modes under a window that
+    nobody stated. Poles and terms that stood for it before are struck off.
+    """
+    if -1 in fit.linear.powers:
+        return fit
+    powers, weights = tuple(sorted((*fit.linear.powers, -1))), search_weights(frfs, fit)
+    if not _explained(frfs, fit, weights, powers) > 0.0:
+        return fit
+    trial = refine(frfs, fit.poles, weights, powers=powers, iterations=SHORT, tolerance=COARSE)
+    return pruned(frfs, trial, weights, band, iterations=SHORT, tolerance=COARSE)
 
 
 def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:

@@ -31,7 +31,7 @@ from updating.problem.candidate import Candidate
 
 RISES = {"E": 1, "density": -1, "thickness": 1, "length": -1, "clamp_rotation": 1, "sensor_mass": -1}
 RISES |= {"clamp_translation": 1, "lumped_mass": -1, "local_stiffness": -1, "axial_load": 1}
-RISES |= {"fluid_added_mass": -1, "exponential_window": 0, "calibration_gain": 0, "section_scale": 0}
+RISES |= {"fluid_added_mass": -1, "exponential_window": 1, "calibration_gain": 0, "section_scale": 0}
 """Sign of the change of the first frequency with each effect's first size; 0 is none at all."""
 RISES |= {"ground_spring": 1, "local_mass": -1}
 SIZE = {"local_stiffness": "loss", "lumped_mass": "mass", "ground_spring": "stiffness"}
@@ -186,6 +186,9 @@ def test_the_small_model_agrees_with_the_full_one(name: str, place: str, quantil
     }  # clamps along whole edges
     found = predictor.predict(effect.state(predictor, values), count=5).frequency
     full = full_modes(name, predictor, values, 5)
+    if name == "exponential_window":  # moves poles beside their frequency of ringing
+        ratio = predictor.predict(count=5).damping
+        full = np.hypot(full * np.sqrt(1 - ratio**2), ratio * full + values["decay"] / (2 * np.pi))
     near = 0.2 * effect.fidelity * abs(np.log(values["ratio"])) if name == "orthotropy" else 0.0
     assert found == pytest.approx(full, rel=max(near, bound(effect, predictor, full)))
 

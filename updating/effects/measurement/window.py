@@ -22,7 +22,7 @@ class ExponentialWindow(Effect):
     phrase = "an exponential window left in the data"
     equivalent_to = ("uniform_damping",)
     separated_by = (
-        "phases of low modes and the noise of the hits; else the analyser's settings, or a repeat with another window"
+        "phases of low modes, the noise of the hits; or the analyser's settings, a repeat with another window"
     )
 
     def damps(self, parameter: str = "") -> bool:
