@@ -135,7 +135,9 @@ def fit_candidates(
     while find_split_mode(fitted.frfs, fitted.fit) is not None:
         fit = without_split_modes(fitted.frfs, fitted.fit)
         fitted = _weighted(frfs, fit, fitted.drift, band)
-    fit = with_odd_term(fitted.frfs, fitted.fit, band)  # where FRFs disagree, the term would take that
+    fit = with_odd_term(
+        fitted.frfs, fitted.fit, fitted.weights, band
+    )  # where FRFs disagree, the term would take that
     return fitted if fit is fitted.fit else _weighted(frfs, fit, fitted.drift, band)
 
 

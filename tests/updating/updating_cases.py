@@ -221,7 +221,9 @@ def struck(
     frequency = beam.frequencies(modes)
     shape = beam.shapes(frequency, POINTS + beam.length - BEAM.length)
     omega = 2 * np.pi * frequency
-    damping = np.exp(0.2 * rng.standard_normal(modes)) * (1.0 / omega + 0.5e-6 * omega) + decay / omega
+    damping = np.exp(0.2 * rng.standard_normal(modes)) * (1.0 / omega + 0.5e-6 * omega)
+    poles = -damping * omega + 1j * omega * np.sqrt(1 - damping**2) - decay
+    frequency, damping = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
     level = gain * float(np.exp(0.02 * rng.standard_normal()))
     return observed(frequency, damping, level * shape * shape[sensor], POINTS, rng, sensor=sensor)
 

@@ -123,29 +123,48 @@ def _higher(
     rung = ladder.index(fit.linear.powers)
     if rung + 1 == len(ladder):
         return fit.linear.powers, 0.0
-    return ladder[rung + 1], _explained(frfs, fit, weights, ladder[rung + 1])
+    extra = (len(ladder[rung + 1]) - len(ladder[rung])) * len(frfs.values)
+    return ladder[rung + 1], _gain(frfs, fit, weights, ladder[rung + 1]) - float(stats.chi2.isf(1e-6, extra))
 
 
-def _explained(frfs: FrfSet, fit: Fit, weights: Weights, powers: tuple[int, ...]) -> float:
-    """Return by how much more than noise a larger set of residual terms explains, poles held [-]."""
+def _gain(frfs: FrfSet, fit: Fit, weights: Weights, powers: tuple[int, ...]) -> float:
+    """Return how much a larger set of residual terms explains, poles held, in units of the noise [-]."""
     here = evaluate(frfs, fit.poles, weights, fit.linear.powers).cost
     there = evaluate(frfs, fit.poles, weights, powers).cost
-    gain = 2.0 * (here - there) / window_shaped.at_start(weights.fade)
-    return gain - float(stats.chi2.isf(1e-6, (len(powers) - len(fit.linear.powers)) * len(frfs.values)))
+    return float(2.0 * (here - there) / window_shaped.at_start(weights.fade))
 
 
-def with_odd_term(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fit:
-    """Return a fit with a residual term in 1/s, if that explains more than noise can.
+def with_odd_term(
+    frfs: FrfSet, fit: Fit, weights: Weights, band: tuple[float, float], *, chance: float = 0.01
+) -> Fit:
+    """Return a fit with a residual term in 1/s, if that explains more than noise does.
 
     Modes whose residues are not imaginary leave one: complex modes beyond the band, and all modes under a window that
     nobody stated. Poles and terms that stood for it before are struck off.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs, carried over to common poles.
+    fit : Fit
+        Without the term.
+    weights : Weights
+        Those of the fit.
+    band : tuple of float
+        The band [Hz].
+    chance : float
+        Share of tests that take the term in without need [-]: it widens intervals a little, where it lacks it biases
+        them.
     """
     if -1 in fit.linear.powers:
         return fit
-    powers, weights = tuple(sorted((*fit.linear.powers, -1))), search_weights(frfs, fit)
-    if not _explained(frfs, fit, weights, powers) > 0.0:
+    powers = tuple(sorted((*fit.linear.powers, -1)))
+    if _gain(frfs, fit, weights, powers) < len(frfs.values):  # what noise alone gains
         return fit
     trial = refine(frfs, fit.poles, weights, powers=powers, iterations=SHORT, tolerance=COARSE)
+    gain = 2.0 * (fit.cost - trial.cost) / window_shaped.at_start(weights.fade)
+    if gain < stats.chi2.isf(chance, len(frfs.values)):
+        return fit
     return pruned(frfs, trial, weights, band, iterations=SHORT, tolerance=COARSE)
 
 

@@ -68,9 +68,9 @@ def test_close_modes_of_several_references_are_told_apart_by_one_set_of_sums(bas
     frfs = truth.frfs(lines(), pairs, noise=0.01, rng=np.random.default_rng(2))
     model = identify(replace(frfs, window="none"), band=(300.0, 600.0))
     assert len(model) == 5
-    assert (
-        len(bases) < 100
-    )  # 64 to 84 over seeds and BLAS; a projection per trial would be 56 more for each close pair
+    # 64 to 84 over seeds and BLAS, some 20 more where a residual term in 1/s comes in last, as here; a projection per
+    # trial would be 56 more for each close pair
+    assert len(bases) < 120
 
 
 def test_lengths_of_lines_for_many_matrices_as_for_few():
