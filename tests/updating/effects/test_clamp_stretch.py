@@ -87,7 +87,8 @@ def test_mirrored_stretches_give_the_same_frequencies(a: float, b: float, name: 
     low, high = sorted((a, b))
     here = frequencies(name, 5.0, **{"from": low, "to": high})
     there = frequencies(name, 5.0, **{"from": THIN.width - high, "to": THIN.width - low})
-    np.testing.assert_allclose(here, there, rtol=1e-4, atol=2e-5)
+    # what holds is so stiff that rounding makes 8e-4 of a shift; a tenth as stiff it makes 1e-5 and gives way by 4e-2
+    np.testing.assert_allclose(here, there, rtol=2e-3, atol=2e-5)
 
 
 @settings(max_examples=10, deadline=None)
