@@ -84,7 +84,13 @@ def full_modes(name: str, predictor: Predictor, values: dict[str, Any], count: i
     released = change.get("released", released)
     first = structure.rigid_modes
     found = structure.eigen(first + count, stiffness=k, mass=m, released=released)[0][first:]
-    return np.sqrt(found) / (2 * np.pi)
+    if name != "exponential_window":
+        return np.sqrt(found) / (2 * np.pi)
+    ratio = np.nan_to_num(
+        predictor.predict(count=count).damping
+    )  # it moves poles beside their frequency of ringing
+    ringing, real = np.sqrt(found * (1 - ratio**2)), ratio * np.sqrt(found) + values["decay"]
+    return np.hypot(ringing, real) / (2 * np.pi)
 
 
 def bound(effect: Effect, predictor: Predictor, full: np.ndarray) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.models.whole import ReducedOnlyError, size_of
 from updating.prediction.predict import Predictor
+from updating.prediction.window_left import with_window
 from updating.update.parameters.basis import Factor
 
 
@@ -62,6 +64,9 @@ def full_modes(
         * np.sqrt(np.maximum(values[first:], 0.0))
         / (2 * np.pi)
     )
+    if state.decay:  # a window moves poles beside their damping, that of the reduced model
+        without = replace(change(predictor), decay=-predictor.base.decay)
+        frequency, _ = with_window(frequency, predictor.predict(without, count=count).damping, state.decay)
     return np.asarray(frequency), vectors[:, first:]
 
 
