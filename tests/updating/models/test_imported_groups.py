@@ -209,7 +209,7 @@ def test_names_that_the_model_does_not_have(predictor: Predictor) -> None:
         ("local_stiffness", {"region": "web", "loss": 0.1}, "region = 'web' is not one of the model's: "
                                                             "beam_1, beam_2"),
         ("joint", {"joint": "bolt"}, "joint = 'bolt' is not one of the model's: joint_1"),
-        ("ground_spring", {"at": "roof", "along": "x", "stiffness": 1.0}, "at = 'roof' is none"),
+        ("ground_spring", {"at": "roof", "along": "x", "stiffness": 1.0}, "at = 'roof' is not one of the model's"),
         ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is not a "
                                                                                     "direction"),
     ):  # fmt: skip
