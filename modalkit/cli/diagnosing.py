@@ -64,9 +64,10 @@ def diagnose(
         sessions = [open_study(read_study(path)) for path in studies]
     with working("comparing the effects"):
         diagnosis = diagnose_studies(sessions, _names(shared), _names(without), rules=decided_by)
+    if json is not None:  # first, for a reader of what is printed may close the pipe
+        write_json(json, diagnosis_document(diagnosis, warnings_of(sessions)))
     show_diagnosis(diagnosis, *sessions)
     if json is not None:
-        write_json(json, diagnosis_document(diagnosis, warnings_of(sessions)))
         out.print(f"written: {json}", markup=False)
     if report is not None or figures is not None:
         _draw(diagnosis, sessions, report, figures)
