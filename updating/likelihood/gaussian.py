@@ -19,7 +19,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.judged import Apart, channels_apart
+from updating.likelihood.judged import SeparateChannel, separate_channels
 from updating.likelihood.separate import Beside, separate
 from updating.thresholds import DOUBT_SHARES, LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
 
@@ -82,30 +82,32 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
-    apart = channels_apart(comparison, keep, comparison.sizes)
-    parts = gaussian(comparison, scales, _without(comparison, keep, apart), sizes=comparison.sizes)
+    channels = separate_channels(comparison, keep, comparison.sizes)
+    parts = gaussian(comparison, scales, _without(comparison, keep, channels), sizes=comparison.sizes)
     prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
     score = parts.log_likelihood + prior - np.log(len(parts.sizes))
-    for one in apart:
+    for one in channels:
         score = score + one.summed[:, None]
     top = np.unravel_index(int(np.argmax(score)), score.shape)
-    found = _joined(parts.at(int(top[0]), int(top[1])), apart, int(top[0]))
+    found = _joined(parts.at(int(top[0]), int(top[1])), channels, int(top[0]))
     return replace(found, log_likelihood=float(np.logaddexp.reduce(score, axis=None)))
 
 
-def _without(comparison: Comparison, keep: BoolArray | None, apart: Sequence[Apart]) -> BoolArray | None:
-    """Return which data (n,) are in no channel apart; None for all."""
-    if not apart:
+def _without(
+    comparison: Comparison, keep: BoolArray | None, channels: Sequence[SeparateChannel]
+) -> BoolArray | None:
+    """Return which data (n,) are in none of the separate channels; None for all."""
+    if not channels:
         return keep
-    others = ~np.isin(comparison.channel, [one.channel for one in apart])
+    others = ~np.isin(comparison.channel, [one.channel for one in channels])
     return others if keep is None else others & keep
 
 
-def _joined(found: Marginal, apart: Sequence[Apart], size: int) -> Marginal:
-    """Return a marginal with the channels apart in it, at one size of the other doubts."""
+def _joined(found: Marginal, channels: Sequence[SeparateChannel], size: int) -> Marginal:
+    """Return a marginal with the separate channels in it, at one size of the other doubts."""
     shift = found.shift.copy()
     chi2, count, judged = found.chi2, found.count, []
-    for one in apart:
+    for one in channels:
         best = int(np.argmax(one.log_likelihood[size]))
         shift[one.columns] = one.shift[size, best]
         chi2, count = chi2 + float(one.chi2[size, best]), count + one.count

@@ -21,7 +21,7 @@ from updating.thresholds import DOUBT_SHARES
 
 
 @dataclass(frozen=True, eq=False)
-class Apart:
+class SeparateChannel:
     """A channel beside all sizes of the other doubts and all shares of its own.
 
     Parameters
@@ -53,9 +53,9 @@ class Apart:
         )
 
 
-def channels_apart(
+def separate_channels(
     comparison: Comparison, keep: BoolArray | None, sizes: Sequence[tuple[float, float]]
-) -> list[Apart]:
+) -> list[SeparateChannel]:
     """Return each channel with a judged doubt and nuisances of its own.
 
     Parameters
@@ -77,17 +77,19 @@ def channels_apart(
         rows = used & (comparison.channel == channel)
         columns = touched[rows].any(axis=0)
         if not (touched[used & ~rows] & columns).any():
-            found.append(_apart(comparison, channel, np.flatnonzero(rows), np.flatnonzero(columns), sizes))
+            found.append(
+                _integrated(comparison, channel, np.flatnonzero(rows), np.flatnonzero(columns), sizes)
+            )
     return found
 
 
-def _apart(
+def _integrated(
     comparison: Comparison,
     channel: int,
     rows: IntArray,
     columns: IntArray,
     sizes: Sequence[tuple[float, float]],
-) -> Apart:
+) -> SeparateChannel:
     """Integrate the nuisances of a channel out at all sizes and shares, as in :func:`gaussian`."""
     assert comparison.judged is not None
     assert comparison.judged_columns is not None
@@ -105,4 +107,4 @@ def _apart(
     chi2 = np.maximum(whole[..., -1, -1] - np.sum(pull * shift, axis=-1), 0.0)
     log_det = np.linalg.slogdet(precision)[1] + np.log(variance).sum(axis=-1)
     likelihood = -0.5 * (chi2 + log_det + len(rows) * np.log(2 * np.pi))
-    return Apart(channel, columns, len(rows), likelihood, chi2, shift)
+    return SeparateChannel(channel, columns, len(rows), likelihood, chi2, shift)
