@@ -115,9 +115,9 @@ def foreign_frfs(frfs: FrfSet) -> Foreign:
     """Return the minority of FRFs that contradicts the others.
 
     Sets of FRFs that share half of their clear peaks belong together, and so do those that a third set links, as in a
-    drift. Outside the largest group of such sets, which must hold most of them, a set is foreign if fewer than half of
-    its peaks lie where a line over measuring order, through those of this group, and the scatter about it allow a
-    further one.
+    drift, and those to which a course over measuring order leads by steps like its last. Outside the largest group of
+    such sets, which must hold most of them, a set is foreign if fewer than half of its peaks lie where a line over
+    measuring order, through those of this group, and the scatter about it allow a further one.
 
     Parameters
     ----------
@@ -131,7 +131,8 @@ def foreign_frfs(frfs: FrfSet) -> Foreign:
         sets = np.unique(order[kind == one])
         peaks = [_peaks(frfs, np.flatnonzero((order == s) & (kind == one))) for s in sets]
         known = np.flatnonzero([len(p.clear.place) for p in peaks]).tolist()
-        main = np.array(known, dtype=np.int64)[_largest([peaks[k] for k in known])]
+        together = np.array(known, dtype=np.int64)[_largest([peaks[k] for k in known])]
+        main = _along_course(together, known, peaks)
         if len(known) < FEWEST or 2 * len(main) <= len(known):
             continue
         odd = [k for k in known if k not in main and _contradicts(k, peaks, main)]
@@ -215,6 +216,33 @@ def _alike(one: _Peaks, other: _Peaks) -> bool:
     fewer, more = (one, other) if len(one.clear.place) <= len(other.clear.place) else (other, one)
     shared = fewer.clear.shared(more)
     return 2 * int(shared.sum()) >= len(shared) > 0
+
+
+def _along_course(main: IntArray, known: list[int], peaks: list[_Peaks]) -> IntArray:
+    """Return the largest group with the sets before and after it to which its course over measuring order goes on.
+
+    A course that quickens moves sharp peaks by more than their width from set to set, so that none shares them with
+    the set before. A set joins if half of its peaks are no more than three times as far from those of its neighbour as
+    that one is from the two behind it, or as peaks of their width may be: past its first, the steps of a course that
+    goes as the cube of time grow by less.
+    """
+    for side in (sorted(known), sorted(known, reverse=True)):
+        for one in side:
+            behind = main[np.argsort(np.abs(main - one), kind="stable")][: FEWEST - 1]
+            beyond = not main.min() <= one <= main.max() and len(behind) == FEWEST - 1
+            if beyond and _leads_to(peaks[one].clear, [peaks[k].clear for k in behind]):
+                main = np.sort(np.append(main, one))
+    return main
+
+
+def _leads_to(ahead: _Peaks, behind: list[_Peaks]) -> bool:
+    """Return whether the steps between sets, the nearest first, lead to half the peaks of the one ahead of them."""
+    nearest = [np.abs(p.place - ahead.place[:, None]).argmin(axis=1) for p in behind]
+    place = np.stack([p.place[i] for p, i in zip(behind, nearest, strict=True)])
+    steps = np.abs(np.diff(place, axis=0)).max(axis=0)
+    reach = np.maximum(behind[0].reach[nearest[0]], ahead.reach)
+    led = np.abs(ahead.place - place[0]) <= 3.0 * np.maximum(steps, reach)
+    return bool(2 * led.sum() >= len(led))
 
 
 def _contradicts(own: int, peaks: list[_Peaks], main: IntArray) -> bool:

@@ -63,6 +63,16 @@ def test_what_drifts_or_scatters_stays(course: str) -> None:
         assert not foreign_frfs(frfs).rows.any(), (course, seed)
 
 
+@pytest.mark.parametrize("rows", [[], [20]])
+def test_a_course_that_quickens_beyond_the_width_of_peaks_stays(rows: list[int]) -> None:
+    steps = np.maximum((np.arange(21) - 10) // 2, 0.0)
+    for seed in range(3):
+        shifts = np.tile(-1e-5 * steps[:, None] ** 3, 3)
+        shifts[rows] = -0.03
+        frfs = mixed(shifts, seed, damping=1e-4)
+        assert np.flatnonzero(foreign_frfs(frfs).rows).tolist() == rows
+
+
 def test_one_that_jumps_beside_a_course_is_set_aside() -> None:
     shifts = np.tile(-0.004 * np.linspace(0.0, 1.0, 13)[:, None], 3)
     shifts[12] = -0.03
