@@ -117,7 +117,7 @@ def foreign_frfs(frfs: FrfSet) -> Foreign:
     Sets of FRFs that share half of their clear peaks belong together, and so do those that a third set links, as in a
     drift, and those to which a course over measuring order leads by steps like its last. Outside the largest group of
     such sets, which must hold most of them, a set is foreign if fewer than half of its peaks lie where a line over
-    measuring order, through those of this group, and the scatter about it allow a further one.
+    measuring order, through those of this group, and the scatter of all modes about such lines allow a further one.
 
     Parameters
     ----------
@@ -222,9 +222,9 @@ def _along_course(main: IntArray, known: list[int], peaks: list[_Peaks]) -> IntA
     """Return the largest group with the sets before and after it to which its course over measuring order goes on.
 
     A course that quickens moves sharp peaks by more than their width from set to set, so that none shares them with
-    the set before. A set joins if half of its peaks are no more than three times as far from those of its neighbour as
-    that one is from the two behind it, or as peaks of their width may be: past its first, the steps of a course that
-    goes as the cube of time grow by less.
+    the set before. A set joins if its peaks are, beside their widths, no more than three times as far from those of its
+    neighbour as that one is from the two behind it: past its first, the steps of a course that goes as the cube of time
+    grow by less.
     """
     for side in (sorted(known), sorted(known, reverse=True)):
         for one in side:
@@ -236,42 +236,81 @@ def _along_course(main: IntArray, known: list[int], peaks: list[_Peaks]) -> IntA
 
 
 def _leads_to(ahead: _Peaks, behind: list[_Peaks]) -> bool:
-    """Return whether the steps between sets, the nearest first, lead to half the peaks of the one ahead of them."""
+    """Return whether the steps between sets, the nearest first, lead to the peaks of the one ahead of them."""
     nearest = [np.abs(p.place - ahead.place[:, None]).argmin(axis=1) for p in behind]
     place = np.stack([p.place[i] for p, i in zip(behind, nearest, strict=True)])
     steps = np.abs(np.diff(place, axis=0)).max(axis=0)
-    reach = np.maximum(behind[0].reach[nearest[0]], ahead.reach)
-    led = np.abs(ahead.place - place[0]) <= 3.0 * np.maximum(steps, reach)
-    return bool(2 * led.sum() >= len(led))
+    led = np.abs(ahead.place - place[0]) <= behind[0].reach[nearest[0]] + ahead.reach + 3.0 * steps
+    return bool(led.all())
 
 
 def _contradicts(own: int, peaks: list[_Peaks], main: IntArray) -> bool:
     """Return whether most peaks of a set lie beyond what the course and the scatter of the main group allow."""
     here = peaks[own].clear
-    beside = [_beside(p, r, own, peaks, main) for p, r in zip(here.place, here.reach, strict=True)]
-    return 2 * sum(beside) > len(beside)
+    courses = [
+        _course(place, reach, peaks, main) for place, reach in zip(here.place, here.reach, strict=True)
+    ]
+    left = np.stack([course.left for course in courses], axis=1)
+    freedom = np.array([max(len(course.at) - 2, 0) for course in courses])
+    product = left.T @ left  # what modes have in common counts once (Satterthwaite 1946)
+    alike = np.sum(product**2) / max(np.trace(product) ** 2, np.finfo(float).tiny)
+    sigma = np.sqrt(np.trace(product) / max(freedom.sum(), 1))
+    widening = sigma * stats.t.isf(
+        CHANCE / 2 / len(peaks), max(freedom.max() / max(alike, 1 / len(here.place)), 1.0)
+    )
+    beside = [
+        abs(place - course.foretold(own)) > reach + (course.leverage(own) * widening if n else LARGEST)
+        for place, reach, course, n in zip(here.place, here.reach, courses, freedom, strict=True)
+    ]
+    return bool(2 * sum(beside) > len(beside))
 
 
-def _beside(place: float, reach: float, own: int, peaks: list[_Peaks], main: IntArray) -> bool:
-    """Return whether a peak lies beyond the places at which the main group has the nearest one.
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """Where the main group has the peak nearest to one, over measuring order.
 
-    The place is foretold by a line over measuring order; Student's t over all sets, plus the width of the peak. Where
-    too few sets have the mode, it is the largest shift that is believed.
+    Parameters
+    ----------
+    at : (n,) int array
+        Sets that have it, as ranks in measuring order; too few for a line: the nearest one alone.
+    middle, rate : float
+        The line through them: its height in their middle [ln Hz], and its slope [1].
+    left : (n_main,) array
+        What it leaves in each set of the group, 0 in those that lack the peak [-].
     """
-    clear = {k: peaks[k].clear.place for k in main}
-    nearest = [(k, p[np.abs(p - place).argmin()]) for k, p in clear.items()]
-    distance = np.array([abs(p - place) for _, p in nearest])
+
+    at: IntArray
+    middle: float
+    rate: float
+    left: FloatArray
+
+    def foretold(self, rank: int) -> float:
+        """Return where the line is at a rank [ln Hz]."""
+        return float(self.middle + self.rate * (rank - self.at.mean()))
+
+    def leverage(self, rank: int) -> float:
+        """Return the standard deviation of a further peak at a rank, over that of one about the line [-]."""
+        away = self.at - self.at.mean()
+        return float(np.sqrt(1.0 + 1.0 / len(away) + (rank - self.at.mean()) ** 2 / np.sum(away**2)))
+
+
+def _course(place: float, reach: float, peaks: list[_Peaks], main: IntArray) -> _Course:
+    """Fit a line over measuring order through the peaks nearest to a place.
+
+    Where too few sets have the mode, the nearest place alone is compared.
+    """
+    nearest = np.array([p[np.abs(p - place).argmin()] for p in (peaks[k].clear.place for k in main)])
+    distance = np.abs(nearest - place)
     same = distance <= 2.0 * distance.min() + reach  # sets that lack this mode offer another one
-    at, there = (np.array(v)[same] for v in zip(*nearest, strict=True))
-    if len(at) < FEWEST:
-        return bool(distance.min() > reach + LARGEST)
-    mean, spread = at.mean(), np.sum((at - at.mean()) ** 2)
-    rate = np.sum((at - mean) * there) / spread
-    left = there - there.mean() - rate * (at - mean)
-    freedom = len(at) - 2
-    sigma = np.sqrt(np.sum(left**2) / freedom * (1.0 + 1.0 / len(at) + (own - mean) ** 2 / spread))
-    limit = reach + sigma * stats.t.isf(CHANCE / 2 / len(peaks), freedom)
-    return bool(abs(place - there.mean() - rate * (own - mean)) > limit)
+    left = np.zeros(len(main))
+    if np.sum(same) < FEWEST:
+        first = [distance.argmin()]
+        return _Course(main[first], float(nearest[first][0]), 0.0, left)
+    at, there = main[same], nearest[same]
+    away = at - at.mean()
+    rate = np.sum(away * there) / np.sum(away**2)
+    left[same] = there - there.mean() - rate * away
+    return _Course(at, float(there.mean()), float(rate), left)
 
 
 def _places(sets: list[_Peaks]) -> tuple[float, ...]:
