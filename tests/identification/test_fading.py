@@ -29,6 +29,7 @@ def identified(decay: float, *, stated: float, seed: int = 0) -> Fading | None:
     return identify(estimate_frfs(replace(test, decay=stated), band=(10.0, 190.0))).fading
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("decay", [0.0, 0.4, 1.0, 3.0])
 @pytest.mark.parametrize("part", [1.0, 0.0])
 def test_noise_fades_as_the_window_stated_or_not(decay: float, part: float) -> None:

@@ -36,6 +36,7 @@ def array(seed: int) -> FrfSet:
     return estimate_frfs(test, band=(10.0, 190.0))
 
 
+@pytest.mark.long
 def test_noise_of_the_force_makes_no_modes_and_its_sigmas_hold() -> None:
     scores = []
     for seed in range(12):
@@ -75,6 +76,7 @@ def roving(seed: int, drift: float) -> FrfSet:
     return estimate_frfs(test, band=(10.0, 190.0))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drift", [0.0, 5e-4, 2e-3])
 def test_drift_between_points_splits_no_mode_and_is_in_the_sigma(drift: float) -> None:
     frequency, damping = [], []

@@ -22,6 +22,7 @@ def beam(shared_data) -> FrfSet:
     return FrfSet(data["freq_Hz"], values, sensor, hits, form="accelerance")
 
 
+@pytest.mark.long
 def test_very_light_damping_four_modes_and_no_fifth(beam):
     model = identify(beam, band=(65.0, 1000.0))
     assert len(model) == 4
@@ -36,6 +37,7 @@ def test_second_opinion_finds_the_published_poles(beam):
     np.testing.assert_allclose(table["frequency [Hz]"], BEAM_HZ, rtol=2e-4)
 
 
+@pytest.mark.long
 def test_free_beam_at_one_hertz_spacing(shared_data):
     content = read_uff(shared_data("uff/pyuff/measurement.uff"))
     frfs = content.frfs

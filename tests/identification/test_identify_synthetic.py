@@ -57,6 +57,7 @@ def test_bench_every_band_and_order(method, df, noise):
                 assert_all_and_only(model, truth, low, 1000, frequency=0.02 * noise, damping=2 * noise)
 
 
+@pytest.mark.long
 def test_lsce_leads_to_the_same_modes(rng):
     truth = bench()
     frfs = truth.frfs(lines(), column(), noise=0.01, rng=rng)
@@ -75,6 +76,7 @@ def test_clean_data_give_the_truth_to_many_digits():
     np.testing.assert_allclose(model.modal.shapes * sign, truth.shapes[:, :12], atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["receptance", "mobility", "accelerance"])
 def test_every_form_and_the_residual_terms(form):
     truth = structure((20.0, 300.0, 420.0, 2000.0), (0.01, 0.01, 0.008, 0.01), 6, seed=1)
@@ -124,6 +126,7 @@ def test_few_lines(rng):
     assert_all_and_only(identify(frfs), truth, 92, 122, frequency=3e-4, damping=4e-2)
 
 
+@pytest.mark.long
 def test_three_references_part_a_pair_two_in_a_thousand_apart(rng):
     truth = structure((80.0, 200.0, 200.4, 330.0), (0.01, 0.006, 0.005, 0.004), 12, seed=7)
     pairs = [(i, j) for j in (2, 4, 9) for i in range(1, 13)]
@@ -143,6 +146,7 @@ def test_reciprocity_and_signs_of_directions(rng):
     np.testing.assert_allclose(identify(turned).constants, one.constants, rtol=1e-8, atol=1e-10)
 
 
+@pytest.mark.long
 @settings(max_examples=8)
 @given(scale=st.floats(1e-6, 1e6), seed=st.integers(0, 2**31), shuffle=st.permutations(range(5)))
 def test_scale_and_order_of_the_frfs_do_not_matter(scale, seed, shuffle):

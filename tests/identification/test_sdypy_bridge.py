@@ -51,6 +51,7 @@ def test_a_model_without_modes_is_refused(case):
         from_sdypy(other, frfs)
 
 
+@pytest.mark.long
 def test_ours_are_closer_to_the_truth_than_its_best_poles(rng):
     truth = bench()
     frfs = truth.frfs(lines(), column(), noise=0.01, rng=rng)

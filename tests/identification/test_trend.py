@@ -70,6 +70,7 @@ def test_a_drift_is_found_with_its_sign_and_the_modes_are_those_of_the_middle(
     assert any(f"drift: from the first of {POINTS} points" in w for w in model.warnings)
 
 
+@pytest.mark.long
 def test_without_drift_the_trend_is_none_within_its_sigma() -> None:
     trends = [found(roved(line(0.0), seed)).trend for seed in range(8)]
     scores = np.array([t.rate / t.rate_sigma for t in trends if t is not None])
@@ -78,6 +79,7 @@ def test_without_drift_the_trend_is_none_within_its_sigma() -> None:
     assert 0.3 < np.sqrt(np.mean(scores**2)) < 1.7
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_what_each_point_has_of_its_own_widens_the_sigma_and_is_no_trend(seed: int) -> None:
     scatter = 1.0 + 1e-3 * np.random.default_rng(20 + seed).standard_normal(POINTS)
@@ -87,6 +89,7 @@ def test_what_each_point_has_of_its_own_widens_the_sigma_and_is_no_trend(seed: i
     assert 5e-4 < trend.rate_sigma < 3e-3  # 1e-3 over 13 points, 12 / 13 of them squared
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("rate", "shapes"), [(0.0, 5), (0.0, 6), (1e-3, 5)])
 def test_the_mass_of_a_roving_sensor_is_no_trend(rate: float, shapes: int) -> None:
     """It lowers each mode by its square where the sensor sits, the more the further out it goes."""
@@ -98,6 +101,7 @@ def test_the_mass_of_a_roving_sensor_is_no_trend(rate: float, shapes: int) -> No
     assert trend.rate_sigma < 1e-3
 
 
+@pytest.mark.long
 def test_one_mode_that_shifts_alone_is_no_drift_of_all() -> None:
     factors = np.stack([line(0.0), line(0.0), line(4e-3)], axis=1)
     trend = found(roved(factors, 2)).trend
@@ -132,6 +136,7 @@ def test_a_drift_is_sought_in_the_spectra_only_where_peaks_do_not_overlap() -> N
     np.testing.assert_allclose(course, line(0.02) - 1.0, atol=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("points", [3, 4, 6])
 def test_chance_hardly_makes_a_plain_drift_of_few_points(points: int) -> None:
     """Scatter from point to point, of which each is sure: three points have one spare, whose tails are long."""

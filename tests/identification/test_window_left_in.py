@@ -36,6 +36,7 @@ def exact(system: ModalSystem, decay: float, like: FrfSet) -> FrfSet:
     return replace(like, values=values, variance=None, coherence=None, averages=None, record=None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("decay", [0.0, 2.0, 7.3])
 @pytest.mark.parametrize("noise", [True, False])
 def test_poles_are_those_of_the_structure_moved_by_the_window(decay: float, noise: bool) -> None:

@@ -34,6 +34,7 @@ def imported(path: Path) -> set[str]:
     return names
 
 
+@pytest.mark.long
 def test_the_contracts_of_the_import_linter_are_kept() -> None:
     command = [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -101,6 +102,7 @@ for package in sys.argv[1:]:
 """
 
 
+@pytest.mark.long
 def test_whoever_keeps_secrets_loads_nothing_of_the_candidates() -> None:
     packages = ["modalkit.simulator", "modalkit.blind"]
     words = [sys.executable, "-c", EVERY_MODULE, *packages]
@@ -113,6 +115,7 @@ def test_nothing_is_plotted_below_the_face() -> None:
         assert not {n for n in imported(path) if n.split(".")[0] == "matplotlib"}, path
 
 
+@pytest.mark.long
 def test_pyplot_and_its_global_state_are_not_used() -> None:
     for path in sources(*ROOMS):
         assert "matplotlib.pyplot" not in imported(path), path

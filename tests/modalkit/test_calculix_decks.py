@@ -184,6 +184,7 @@ def test_elements_of_reduced_integration_that_leave_motions_loose(
     assert frequencies(tmp_path, "block", 3)[0] == 0
 
 
+@pytest.mark.long
 @needs_ccx
 def test_shapes_are_those_that_ccx_prints(example: Callable[[str], ModuleType], tmp_path: Path) -> None:
     """Displacements at the nodes, an oblique direction too: same shape, one sign for a mode."""

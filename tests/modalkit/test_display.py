@@ -57,6 +57,7 @@ class _Tags(HTMLParser):
         assert self.open.pop() == tag
 
 
+@pytest.mark.long
 def test_every_result_has_a_short_repr_and_sound_html(
     session: modalkit.Session, diagnosis: Diagnosis
 ) -> None:

@@ -102,6 +102,7 @@ def test_an_effect_takes_some_thirty_lines() -> None:
     assert len([line for line in code().splitlines() if line.strip()]) <= 32
 
 
+@pytest.mark.long
 def test_the_effect_on_the_page_is_named(diagnosis: Diagnosis) -> None:
     assert (diagnosis.verdict, diagnosis.sets) == ("named", (("bushing",),)), diagnosis.table()
     estimate = diagnosis.ranking[0].parameters["bushing.stiffness"]

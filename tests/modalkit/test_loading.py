@@ -48,6 +48,7 @@ def test_the_list_of_commands_loads_none_of_the_computing_packages() -> None:
     assert not {name for name in there if name.startswith(("identification.", "updating."))}
 
 
+@pytest.mark.long
 def test_inspect_loads_neither_identification_nor_models() -> None:
     there = modules_after(command("inspect", str(ROOT / "sample_data/beam_wet/beam_wet.uff")))
     assert "numpy" in there  # or the list says nothing
@@ -114,6 +115,7 @@ def test_the_version_is_that_of_the_package(run) -> None:
     assert run("--version") == (0, f"modalkit {__version__}\n", "")
 
 
+@pytest.mark.long
 def test_a_shell_completes_commands_and_options() -> None:
     for typed, expected in (("modalkit id", "identify"), ("modalkit identify --ba", "--band")):
         words = {
@@ -158,6 +160,7 @@ def test_every_public_name_loads(room: str) -> None:
         _ = package.no_such_name
 
 
+@pytest.mark.long
 def test_a_function_keeps_its_place_when_the_module_of_its_name_is_loaded() -> None:
     body = (
         "import identification, identification.identify, identification.mac, modalkit, modalkit.figures\n"
@@ -185,6 +188,7 @@ def test_a_foreign_module_under_the_name_of_a_room_is_refused(tmp_path: Path) ->
     assert f"finds {tmp_path / 'acquisition.py'}; rename that file" in done.stderr
 
 
+@pytest.mark.long
 def test_what_runs_commands_in_forks_has_loaded_them_before() -> None:
     body = (
         "import runpy\nfrom modalkit.workers import server\nserver.serve_standard = lambda program: None\n"

@@ -59,6 +59,7 @@ def test_a_study_moves_beside_its_model() -> None:
     assert page["model"] is not None and len(page["modes"]) == 3
 
 
+@pytest.mark.long
 def test_nothing_of_a_notebook_is_loaded_and_the_rooms_below_say_who_draws() -> None:
     code = (
         "import sys, numpy as np\n"
@@ -81,6 +82,7 @@ def test_a_drawing_is_saved_as_a_report_is(tmp_path: Path) -> None:
         drawn.save(tmp_path / "other.html")
 
 
+@pytest.mark.long
 @pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium")
 def test_the_frame_of_a_notebook_draws(tmp_path: Path) -> None:
     sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")

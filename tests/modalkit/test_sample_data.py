@@ -53,6 +53,7 @@ def maker() -> Iterator[ModuleType]:
     sys.path.remove(str(SAMPLES))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NAMES)
 def test_the_identified_frequencies_are_the_published_ones(name: str) -> None:
     study = read_study(SAMPLES / name / "study.toml")
@@ -101,6 +102,7 @@ def test_beams_carry_their_hits_and_plates_their_coherence() -> None:
     assert plate.frfs.decay == pytest.approx(4.0)
 
 
+@pytest.mark.long
 def test_a_sample_is_made_anew_alike(maker: ModuleType, tmp_path: Path) -> None:
     test_setup = maker.rigs()[0]
     made = read(maker.make(test_setup, tmp_path)).frfs
@@ -139,6 +141,7 @@ def test_frequencies_follow_the_hits_in_the_joint_test_and_in_no_other() -> None
     assert averaged.slope is None
 
 
+@pytest.mark.long
 def test_a_tape_test_is_made_anew_alike(maker: ModuleType, tmp_path: Path) -> None:
     test_setup = maker.RIGS[1]
     made = read(maker.make_tape(test_setup, tmp_path)).frfs

@@ -236,6 +236,7 @@ LVM_COLUMNS = [
 BEAM = np.array([695.8, 1898.1, 3671.5])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("names", [("acceleration",), ("acceleration", "camera")])
 def test_the_free_free_beam_ends_in_its_reference_frequencies(shared_data, names):
     files = [shared_data(f"impacts/free-free-beam/{name}.lvm") for name in names]

@@ -51,6 +51,7 @@ def flat(frfs: FrfSet):
 TESTS = 200
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("force_noise", [0.0, 0.4])
 def test_covariances_stated_are_those_that_occur(force_noise):
     """Force noise ties the responses of a hit together, a window the lines; over many tests both are right."""

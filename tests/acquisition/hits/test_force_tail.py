@@ -66,6 +66,7 @@ def test_noise_leaves_most_of_the_gain(seed: int) -> None:
     assert error(with_tails(shut)[0], best) < 0.4 * error(shut, best)
 
 
+@pytest.mark.long
 def test_units_change_nothing() -> None:
     shut = cut(whole())
     other = replace(shut, points=tuple(replace(p, force=1e-3 * p.force) for p in shut.points))

@@ -222,6 +222,7 @@ def test_a_top_of_two_samples_is_clipped_where_the_steps_are_fine(rng):
     assert found == 20 and false == 0
 
 
+@pytest.mark.long
 def test_windowed_clean_hits_of_any_chain_are_not_clipped(rng):
     """With the converter's steps of 16 bit and with none."""
     for number in range(3 * NUMBER):

@@ -33,6 +33,7 @@ def test_short_and_flat_curves_have_the_peaks_they_have(wave: list[float]) -> No
     assert find_peaks(curve).tolist() == scipy.signal.find_peaks(curve)[0].tolist()
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("no_hang")
 def test_the_peaks_of_a_long_tone_take_no_square_of_their_number() -> None:
     """A sweep of a shaker, read as a force, is looked at too: by each peak's whole record it took minutes."""
@@ -42,6 +43,7 @@ def test_the_peaks_of_a_long_tone_take_no_square_of_their_number() -> None:
     assert found.tolist() == expected.tolist() and len(found) > 50_000
 
 
+@pytest.mark.long
 def test_looking_into_a_file_loads_no_statistics() -> None:
     """They take a second of CPU, more than all the rest of it."""
     sample = Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry" / "beam_dry.uff"

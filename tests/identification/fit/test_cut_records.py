@@ -101,6 +101,7 @@ def test_the_form_of_the_frfs_does_not_matter(truth):
     np.testing.assert_allclose(other.poles, one.poles, rtol=1e-5)
 
 
+@pytest.mark.long
 def test_with_noise_the_intervals_hold(truth):
     """Hits by time integration, cut after 2 s, no window."""
     tests = hammer_tests(chain(), Rig(decay=0.0), [np.random.default_rng(s) for s in range(16)])

@@ -23,6 +23,7 @@ def joined(parts):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drift", [0.0005, 0.002, 0.004])
 def test_a_drift_over_the_test_invents_no_mode(drift):
     rng = np.random.default_rng(3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from identification_cases import Structure, column, lines, structure
 
 from identification import identify
@@ -29,6 +30,7 @@ def drifting(truth: Structure, rng, *, shift: float, noise: float):
     )
 
 
+@pytest.mark.long
 def test_sigma_of_the_frequency_covers_the_drift():
     frequency = []
     for seed in range(12):

@@ -96,6 +96,7 @@ def test_hann_averages_whose_peaks_are_a_line_wide(form):
     assert any("Hann window" in w and "state frf_window" in w for w in model.warnings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("stated", [False, True])
 def test_noise_that_grows_where_the_force_gets_weak_does_not_deny_the_window(seed, stated):
@@ -116,6 +117,7 @@ def test_noise_that_grows_where_the_force_gets_weak_does_not_deny_the_window(see
     check(model, damping, off=0.05)
 
 
+@pytest.mark.long
 def test_a_window_that_is_stated_or_denied():
     frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=4)
     stated = identify(replace(frfs, window="hann"))
@@ -124,6 +126,7 @@ def test_a_window_that_is_stated_or_denied():
     assert identify(replace(frfs, window="none")).frfs.line_shape is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_peaks_far_narrower_than_lines_beside_broad_ones(seed):
     """What rings for many blocks errs by the size of its peak, and would carry the choice of the line shape."""
@@ -155,6 +158,7 @@ def test_errors_by_leakage_follow_the_law():
     assert shared(law, alone, variance) * 400 < 0.1
 
 
+@pytest.mark.long
 def test_a_stated_window_counts_beside_a_drift():
     poles, residues = structure(0.004)
     shape, frequency = LineShape("averaged", 4.0), np.arange(40.0, 160.0, 0.25)
@@ -194,6 +198,7 @@ def test_coarse_lines_without_a_window():
     assert not any("drift" in w or "differ" in w for w in model.warnings)
 
 
+@pytest.mark.long
 def test_of_many_frfs_some_are_asked_and_all_get_the_shape(monkeypatch):
     """240 FRFs of smoothed lines: no more than 96 are fitted for the question, and the answer holds for all."""
     asked, of_few = [], line_shapes._of_few
@@ -210,6 +215,7 @@ def test_of_many_frfs_some_are_asked_and_all_get_the_shape(monkeypatch):
     assert model.frfs.line_shape is not None and len(model.frfs.values) == 240
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["averaged", "smoothed"])
 def test_what_leaves_noise_alone_asks_for_no_second_fit_and_what_was_windowed_does(kind):
     """The score of a shape that is not there is chi-squared of one unknown; one that is there is never excluded."""
@@ -225,6 +231,7 @@ def test_what_leaves_noise_alone_asks_for_no_second_fit_and_what_was_windowed_do
         assert kind in worth_asking(fit_candidates(windowed, poles, band=(40.0, 160.0)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("damping", "df", "blocks", "seed"),
     [(0.003232, 0.8, 20, 170), (0.0184, 1.6, 3, 374), (0.0161, 1.6, 3, 659)],
@@ -237,6 +244,7 @@ def test_averages_over_few_blocks_keep_their_line_shape(damping, df, blocks, see
     check(model, damping, off=0.35)
 
 
+@pytest.mark.long
 def test_frfs_of_noise_alone_do_not_deny_a_window():
     """At nodes, or across the plane of the test: noise rings at all lags, and says nothing of the window."""
     frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=3)
@@ -257,6 +265,7 @@ def test_two_close_modes_are_no_window():
     assert np.sort(np.abs(poles)) / (2 * np.pi) == pytest.approx(model.modal.frequency, rel=1e-4)
 
 
+@pytest.mark.long
 def test_sharp_modes_that_move_from_frf_to_frf_are_no_window():
     """Peaks a fraction of a line wide and alone in their line ring to the end of a block: no window leaves that."""
     rng = np.random.default_rng(5)
@@ -279,6 +288,7 @@ def test_sharp_modes_that_move_from_frf_to_frf_are_no_window():
     assert model.modal.frequency == pytest.approx(hertz, rel=3e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_smoothed_lines_far_wider_than_peaks(seed):
     """One pole on each of three lines imitates the shape; a first mode near the band's edge had none beside it."""
@@ -296,6 +306,7 @@ def test_smoothed_lines_far_wider_than_peaks(seed):
     assert np.max(np.abs(modal.frequency - hertz) / modal.frequency_sigma) < 4.0
 
 
+@pytest.mark.long
 def test_end_lines_to_which_a_neighbour_is_missing():
     """An analyser that smooths over three lines leaves the first and the last as they are, which bias a mode there."""
     poles, residues = structure(0.03)

@@ -38,6 +38,7 @@ def test_pair_two_in_a_thousand_apart(low, order, noise):
     assert np.diag(mac(model.modal.shapes, truth.shapes[:, wanted])).min() > 1 - 2 * noise
 
 
+@pytest.mark.long
 def test_constants_are_of_rank_one_and_their_sigmas_right():
     scores, shape_scores = [], []
     for seed in range(1, 5):
@@ -57,6 +58,7 @@ def test_constants_are_of_rank_one_and_their_sigmas_right():
         assert np.sqrt(np.mean(np.array(score) ** 2)) == pytest.approx(1.0, abs=0.15)
 
 
+@pytest.mark.long
 def test_rank_one_halves_the_error_of_a_close_pair(monkeypatch):
     from identification.fit import fit
 

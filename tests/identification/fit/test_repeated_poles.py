@@ -18,6 +18,7 @@ def test_two_modes_at_one_frequency_are_warned_of():
     assert any("two modes at the same frequency" in w for w in identify(frfs).warnings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("references", [(4,), (4, 8)])
 @pytest.mark.parametrize("half_widths", [0.2, 0.5, 0.9])
 def test_two_modes_within_a_half_width_are_two_whose_references_see_them_alike(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from acquisition import Dof, decide, estimate_frfs, hammer_test, judge_hits, pulses_alone, state_window
 from acquisition.synthetic import HammerPlan, modal_system
@@ -40,6 +41,7 @@ def free_beam(rigid, duration, seed):
     return estimate_frfs(pulses_alone(test)[0], verdicts=decide(judge_hits(test)))
 
 
+@pytest.mark.long
 def test_two_rigid_body_modes_in_few_lines_are_no_drift_of_one():
     model = identify(free_beam((1.85, 2.19), 2.0, seed=0), band=(1.0, 450.0))
     rigid = model.modal.frequency < 10
@@ -47,6 +49,7 @@ def test_two_rigid_body_modes_in_few_lines_are_no_drift_of_one():
     assert not any("differ from FRF to FRF" in w for w in model.warnings)
 
 
+@pytest.mark.long
 def test_a_node_tells_nothing_of_a_drift():
     """The middle is a node of the second bending mode: there any shift fits, and would be a scatter of that mode."""
     model = identify(free_beam((1.85, 2.19), 4.0, seed=0), band=(1.0, 450.0))

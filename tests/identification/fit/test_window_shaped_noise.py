@@ -75,6 +75,7 @@ def test_inflation_is_that_of_least_squares_in_the_time_domain(decay):
     )
 
 
+@pytest.mark.long
 def test_windowed_noise_makes_no_modes_and_sigmas_hold():
     truth = structure((40.0, 120.0, 230.0, 380.0), (0.008, 0.004, 0.003, 0.002), 6, seed=11)
     frequency, damping = [], []

@@ -21,6 +21,7 @@ def found(test: HammerTest, windows: Windows | None = None) -> LevelDependence:
     return dependence
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("windows", [None, Windows(decay=3.0)])
 def test_slopes_come_out_per_mode(windows: Windows | None) -> None:
     at = structure(SLOPES)
@@ -38,6 +39,7 @@ def test_slopes_come_out_per_mode(windows: Windows | None) -> None:
     assert dependence.shifts.shape == (16, 4)
 
 
+@pytest.mark.long
 def test_the_shift_of_a_hit_is_that_of_its_frequency() -> None:
     quiet = replace(PLAN, response_noise=1e-4, force_noise=0.0, adc_bits=None, samples=2048)
     test, true = struck(structure(SLOPES), 1, quiet)
@@ -48,6 +50,7 @@ def test_the_shift_of_a_hit_is_that_of_its_frequency() -> None:
     assert dependence.shifts == pytest.approx(exact, abs=2e-4)  # a fiftieth of a half-width
 
 
+@pytest.mark.long
 def test_damping_has_a_slope_too() -> None:
     test, true = struck(structure(0.0, damping_slope=4e-5), 2)
     dependence = found(test)
@@ -57,6 +60,7 @@ def test_damping_has_a_slope_too() -> None:
     assert (4e-5 / dependence.damping_slope_sigma).max() > 5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("slope", "seeds"), [(0.0, 30), (-2e-5, 12)])
 def test_intervals_cover(slope: float, seeds: int) -> None:
     scores = []
@@ -72,6 +76,7 @@ def test_intervals_cover(slope: float, seeds: int) -> None:
     assert abs(np.mean(scores)) < 4 / np.sqrt(count), "biased"
 
 
+@pytest.mark.long
 def test_drift_from_point_to_point_is_no_slope() -> None:
     """Points hit harder one after the other while the structure warms up: offsets take it."""
     runs = []

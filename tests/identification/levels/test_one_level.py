@@ -47,6 +47,7 @@ def brought(test: HammerTest, windows: Windows | None = None) -> tuple[ModalMode
     return identified(even, windows), found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [3, 4, 5, 8])
 def test_averages_are_smeared_and_stretched_ones_show_every_mode(seed: int) -> None:
     """A mode may still show twice, by rounding: what is brought to one level from there has each once."""
@@ -66,6 +67,7 @@ def test_averages_are_smeared_and_stretched_ones_show_every_mode(seed: int) -> N
     assert len(brought(test, None)[0]) == 4
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("windows", [None, Windows(decay=1.0)])
 def test_brought_to_one_level_they_are_those_of_a_structure_hit_equally_hard(windows: Windows | None) -> None:
     test, true = softening(4)
@@ -82,6 +84,7 @@ def test_brought_to_one_level_they_are_those_of_a_structure_hit_equally_hard(win
     assert np.abs((model.constants - equal.constants) / size).max() < 0.02
 
 
+@pytest.mark.long
 def test_what_does_not_follow_the_level_stays_as_it_is() -> None:
     test = struck(structure(0.0, points=6, damping=LOSS), 5, LONG)[0]
     model = identified(test)
@@ -95,6 +98,7 @@ def test_what_does_not_follow_the_level_stays_as_it_is() -> None:
         assert after.motion == pytest.approx(before.motion, abs=1e-9 * np.abs(before.motion).max())
 
 
+@pytest.mark.long
 def test_inputs_are_left_as_they_are() -> None:
     test, _ = softening(3)
     copies = [p.motion.copy() for p in test.points]

@@ -24,6 +24,7 @@ def slipping():
     return joint, test, identify(estimate_frfs(test), band=(15.0, 750.0))
 
 
+@pytest.mark.long
 def test_constants_of_products_grow_with_the_force_those_of_modes_do_not(slipping) -> None:
     joint, test, model = slipping
     tests = [(test, ())]
@@ -39,6 +40,7 @@ def test_constants_of_products_grow_with_the_force_those_of_modes_do_not(slippin
     )  # the joint's force goes as u^2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slope", [0.0, -1e-4, 1e-4])
 def test_constants_of_modes_that_follow_the_force_do_not_grow(slope: float) -> None:
     for seed in range(3):

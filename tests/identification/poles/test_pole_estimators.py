@@ -124,6 +124,7 @@ def test_says_when_there_are_too_few_lines(name):
         ESTIMATORS[name](frfs, orders=[40])
 
 
+@pytest.mark.long
 def test_the_estimator_on_the_page_identifies(monkeypatch, rng):
     page = (Path(__file__).resolve().parents[3] / "docs" / "howto" / "own_estimator.md").read_text(
         encoding="utf-8"

@@ -180,6 +180,7 @@ def test_neither_units_nor_order_nor_signs_change_the_scale(order, unit, referen
     np.testing.assert_allclose(np.abs(plain.shapes[place]), np.abs(again.shapes), rtol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("references", [(4,), (2, 4), (1, 3, 6)])
 def test_the_covariance_of_scaled_shapes_is_what_scatter_shows(truth, rng, references):
     pairs = columns_of(*references)
@@ -208,6 +209,7 @@ def test_drive_points_are_weighed_by_their_sigma(truth):
     assert_right(shapes, truth, atol=1e-3)
 
 
+@pytest.mark.long
 def test_constants_that_fit_no_single_shape_widen_sigma(truth, rng):
     pairs = columns_of(1, 3, 6)
     clean, sigma = constants_of(truth, pairs), 0.01

@@ -77,6 +77,7 @@ def test_time_integration_agrees_with_the_dynamic_stiffness(truth):
     assert np.allclose(summed * s**2, exact, rtol=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("windowed_by", ["the rig", "us"])
 def test_damping_is_unbiased_and_its_sigma_true(truth, windowed_by):
     rig = Rig() if windowed_by == "the rig" else Rig(decay=0.0)
@@ -125,6 +126,7 @@ def hits(truth: Truth, seed: int, bad) -> HammerTest:
     return hammer_test(system, replace(PLAN, bad=bad), rng=np.random.default_rng(seed))
 
 
+@pytest.mark.long
 def test_bad_hits_are_marked_and_without_them_all_is_as_in_a_clean_test(truth):
     clean, left_out, all_used = [], [], []
     for seed in range(12):

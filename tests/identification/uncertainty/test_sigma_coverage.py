@@ -28,6 +28,7 @@ def scores(seeds, *, above, low=0.0, colour=None, n_points=25, noise=0.01):
     return [np.concatenate(x) for x in (frequency, damping, constants)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("above", [True, False])
 def test_sigmas_are_neither_too_small_nor_too_large(above):
     for score in scores(range(8), above=above):

@@ -134,6 +134,7 @@ def test_a_link_that_leads_out_of_the_folder_is_no_way_out(client, beam, tmp_pat
     assert "outside" in client.post(f"/{TOKEN}/api/act", json=change).json()["error"]
 
 
+@pytest.mark.long
 def test_files_that_the_study_began_with_may_lie_elsewhere(samples):
     study = samples / "beam_dry" / "other.toml"
     study.write_text(

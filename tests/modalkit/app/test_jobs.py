@@ -40,6 +40,7 @@ def ended(controller: Controller, kind: str) -> dict[str, Any]:
     raise AssertionError("the work does not end")
 
 
+@pytest.mark.long
 def test_a_stop_takes_less_than_a_second_and_leaves_nothing(beam):
     controller = opened(beam)
     controller.start("diagnose")
@@ -56,6 +57,7 @@ def test_a_stop_takes_less_than_a_second_and_leaves_nothing(beam):
     controller.stop()  # once more is no harm
 
 
+@pytest.mark.long
 def test_the_result_is_what_the_command_line_writes(beam):
     controller = opened(beam)
     controller.act("set", {"path": ["update", "parameters"], "value": ["E", "length"]})
@@ -72,6 +74,7 @@ def test_the_result_is_what_the_command_line_writes(beam):
     assert opened(beam).work("update")["result"] == found["result"], "a new server finds it again"
 
 
+@pytest.mark.long
 def test_what_lies_in_the_current_folder_is_not_run(beam, tmp_path, monkeypatch):
     """Neither a package of our name beside the study, nor a module that work imports."""
     there = tmp_path / "there"
@@ -86,6 +89,7 @@ def test_what_lies_in_the_current_folder_is_not_run(beam, tmp_path, monkeypatch)
     assert found["job"]["state"] == "done"
 
 
+@pytest.mark.long
 def test_a_result_belongs_to_its_state(beam):
     controller = opened(beam)
     controller.start("update")
@@ -106,6 +110,7 @@ def lowered(modes: Path) -> None:
     os.utime(modes, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+@pytest.mark.long
 def test_a_result_belongs_to_its_files(samples):
     """Other data under the same name: shown at once, without the result of those before; theirs with them."""
     study = samples / "beam_dry" / "published.toml"
@@ -127,6 +132,7 @@ def test_a_result_belongs_to_its_files(samples):
     assert controller.work("update")["result"] == again.work("update")["result"] == found
 
 
+@pytest.mark.long
 def test_hits_that_are_replaced_while_the_app_runs_are_read_anew(samples, tmp_path):
     """Those of a beam with a joint in place of those of the dry one."""
     hits = tmp_path / "hits.uff"
@@ -176,6 +182,7 @@ def test_a_file_that_is_changed_while_work_runs_makes_it_void(samples, tmp_path,
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.long
 def test_work_that_cannot_be_done_says_why(beam):
     controller = opened(beam)
     controller.act("set", {"path": ["update", "parameters"], "value": ["nonsense"]})

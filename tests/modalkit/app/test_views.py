@@ -162,6 +162,7 @@ def test_a_slider_shows_what_the_study_shows_with_the_same_number(beam):
     assert moved["frf"]["model"] == pytest.approx(put["frf"]["model"], rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_slider_of_a_region_finds_what_the_specimen_has_lost(tmp_path):
     """Where the outer left wing is as soft as in the full matrices that made the test, the gap closes on all modes."""
     controller = opened(make_glider(tmp_path / "glider"))
@@ -262,6 +263,7 @@ def test_the_drive_point_is_shown_first(faint):
     assert first_frf(away) == int(np.argmax(size))
 
 
+@pytest.mark.long
 def test_only_what_a_kind_of_model_has_can_be_edited_and_in_handy_units(beam, frame):
     page = plain(opened(beam).model())
     fields = {field["label"]: field for field in page["fields"]}
@@ -304,6 +306,7 @@ def frame(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return Path(importlib.import_module("frame").make(tmp_path_factory.mktemp("frame")))
 
 
+@pytest.mark.long
 def test_what_has_a_name_in_the_model_is_moved_there_and_put_into_it(frame):
     """Regions, supports and node sets: every place answers, and the same entry makes the same model."""
     controller = opened(frame)
@@ -329,6 +332,7 @@ def row(*effects: str, **values: Any) -> dict[str, Any]:
     return {"effects": effects, "parameters": {name: {"value": value} for name, value in values.items()}}
 
 
+@pytest.mark.long
 def test_a_row_of_the_diagnosis_is_put_where_its_names_say(frame):
     controller = opened(frame)
     predictor = controller._workbench.predictor(controller.study)

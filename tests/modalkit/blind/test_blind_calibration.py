@@ -76,6 +76,7 @@ def test_expected_calibration_error_by_hand() -> None:
     assert calibration_error(points[None, [0, 0, 0, 0]])[0] == pytest.approx(0.15)
 
 
+@pytest.mark.long
 def test_honest_probabilities_pass_and_cover() -> None:
     found = score(honest_run(2000, 21)).rates
     bias = found[BIAS, "effects and none, faint ones too"]

@@ -45,6 +45,7 @@ def test_bad_hits_come_in_all_kinds_as_often_as_said_and_leave_most_good() -> No
         assert rows.max() <= 1
 
 
+@pytest.mark.long
 def test_most_tests_have_bad_hits() -> None:
     setups = [draw_trial(50, i, plan=DrawRanges(kinds=("beam",))).scene.setup for i in range(40)]
     assert 0.4 < np.mean([s.bad_hits > 0 for s in setups]) < 0.9
@@ -67,6 +68,7 @@ def ratios(scene: Scene) -> np.ndarray:
     return np.asarray(motion / [np.abs(point.force).max(axis=-1) for point in test.points])
 
 
+@pytest.mark.long
 def test_oblique_hits_push_less_and_unevenly() -> None:
     straight = nominal_scene(replace(plain(), level_scatter=0.0))
     tilted = straight.with_chain(tilt=0.5)

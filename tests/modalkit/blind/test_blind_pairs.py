@@ -30,6 +30,7 @@ def chosen() -> list[tuple[str, ...]]:
     return found
 
 
+@pytest.mark.long
 def test_pairs_are_two_of_the_library_in_the_order_in_which_they_act(chosen: list[tuple[str, ...]]) -> None:
     order = list(HIDDEN_EFFECTS)
     for pair in chosen:

@@ -92,6 +92,7 @@ def draws() -> list[tuple[Setup, str]]:
     return found
 
 
+@pytest.mark.long
 def test_every_effect_comes_up_about_as_often(draws: list[tuple[Setup, str]]) -> None:
     counts = Counter(name for _, name in draws)
     inside = [
@@ -205,6 +206,7 @@ def test_leaving_out_takes_the_true_effect_away() -> None:
 PLATES = DrawRanges(kinds=("plate",))
 
 
+@pytest.mark.long
 def test_plates_are_drawn_as_often_as_said() -> None:
     rng = np.random.default_rng(3)
     kinds = Counter(draw_setup(rng, plan=DrawRanges(plates=0.3)).kind for _ in range(120))

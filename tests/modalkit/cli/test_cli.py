@@ -95,6 +95,7 @@ def test_options_for_hits_are_refused_for_frfs(run: Run, tmp_path: Path) -> None
     assert "--leave" in err and "the files hold FRFs" in err
 
 
+@pytest.mark.long
 def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
     target, figures = tmp_path / "d.json", tmp_path / "figures"
     code, out, _ = run("diagnose", sample_file("beam_wet/study.toml"), "--json", target, "--figures", figures)
@@ -110,6 +111,7 @@ def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
     assert (figures / "diagnosis.png").stat().st_size > 10_000
 
 
+@pytest.mark.long
 def test_correlate_and_update_print_their_tables(run: Run, tmp_path: Path) -> None:
     study = sample_file("beam_dry/study.toml")
     assert "MAC" in run("correlate", study)[1]
@@ -121,6 +123,7 @@ def test_correlate_and_update_print_their_tables(run: Run, tmp_path: Path) -> No
     assert 0.74 < record["parameters"][0]["factor"] < 0.77
 
 
+@pytest.mark.long
 def test_localise_puts_the_tape_where_it_is(run: Run, tmp_path: Path) -> None:
     target, figures = tmp_path / "l.json", tmp_path / "figures"
     study = sample_file("tape_taped/study.toml")

@@ -35,6 +35,7 @@ def modes_alone(folder: Path) -> None:
         (place / "study.toml").write_text('[test]\nmodes = "modes.csv"\n')
 
 
+@pytest.mark.long
 def test_a_batch_that_is_killed_loses_nothing(kills: ModuleType, tmp_path: Path) -> None:
     words = ("batch", "fleet", "-o", "t.csv", "--json-dir", "parts", "--resume")
     before = {"t.csv": b"study,title\nbefore,before\n"}

@@ -52,6 +52,7 @@ def run(folder: Path, words: list[str], **variables: str) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 def test_commands_run_nothing_of_the_current_folder(folder: Path) -> None:
     assert "75 hits" in run(folder, [*SCRIPT, "inspect", "test.uff"])
     run(folder, [*SCRIPT, "effects", "--json", "effects.json"])
@@ -70,11 +71,13 @@ def test_started_as_a_module_only_what_the_interpreter_needs_to_start_it_can_be_
     assert "75 hits" in run(folder, [*MODULE, "inspect", "test.uff"])
 
 
+@pytest.mark.long
 def test_a_batch_runs_nothing_of_the_current_folder(folder: Path) -> None:
     run(folder, [*SCRIPT, "batch", ".", "-o", "table.csv"])
     assert "10.5" in (folder / "table.csv").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("variable", ["", os.pathsep, "."])
 def test_a_warm_process_runs_nothing_of_the_current_folder(
     folder: Path, monkeypatch: pytest.MonkeyPatch, variable: str
@@ -111,6 +114,7 @@ def test_calculix_is_never_taken_from_the_current_folder(
     assert program() is None
 
 
+@pytest.mark.long
 def test_figures_do_not_follow_a_matplotlibrc_of_the_current_folder(folder: Path) -> None:
     for name in ("published.toml", "modes.csv"):
         shutil.copy(ROOT / "sample_data/beam_dry" / name, folder)

@@ -17,6 +17,7 @@ from modalkit.figures.blind.confidence import curve_of
 from modalkit.figures.blind.confusion import confusion_figure, gathered
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("trials", "leave_out"), [(12, False), (60, False), (60, True), (1000, False)])
 def test_blind_run_is_legible(trials: int, leave_out: bool) -> None:
     figures = blind_figures(score(honest_run(trials, 5, leave_out=leave_out)))

@@ -34,6 +34,7 @@ def test_diagnosis_names_every_mode(modes: int) -> None:
     assert_legible(figure)
 
 
+@pytest.mark.long
 @given(
     kind=st.sampled_from(["beam", "plate"]),
     x=st.floats(0.0, 0.4),

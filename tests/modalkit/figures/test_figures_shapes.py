@@ -12,6 +12,7 @@ from modalkit.figures import shapes_figure
 from updating import Predictor
 
 
+@pytest.mark.long
 def test_shapes_of_identified_modes() -> None:
     for model in (model_of(1), model_of(12)):
         figure = shapes_figure(model.modal)

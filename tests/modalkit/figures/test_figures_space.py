@@ -94,6 +94,7 @@ def test_what_has_no_coordinates_says_which_directions_it_leaves_out() -> None:
     assert "not drawn" in words(figure) and "3+X" in words(figure)
 
 
+@pytest.mark.long
 def test_shapes_of_a_glider_are_drawn_with_model_and_test(glider: modalkit.Session) -> None:
     assert glider.identified is not None
     figure = shapes_figure(glider.identified.modal)

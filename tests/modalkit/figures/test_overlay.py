@@ -60,6 +60,7 @@ def test_both_curves_are_in_every_panel() -> None:
     assert "the model's own damping" in message
 
 
+@pytest.mark.long
 def test_correlate_writes_record_and_figure(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -207,6 +207,7 @@ def test_what_a_command_wrote_before_is_replaced(tmp_path: Path) -> None:
     check_output(SAMPLES / "beam_wet" / "beam_wet.uff", uff_of("frfs"))
 
 
+@pytest.mark.long
 def test_a_parquet_table_is_known_by_its_columns(tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     pd.DataFrame({"study": ["a"], "title": ["b"]}).to_parquet(tmp_path / "ours.parquet")

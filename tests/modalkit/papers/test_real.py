@@ -299,6 +299,7 @@ def test_the_docs_list_every_case() -> None:
     assert not [one.name for one in CASES if f"| {one.name} |" not in table]
 
 
+@pytest.mark.long
 def test_published_water_is_named_and_its_density_found() -> None:
     wet = next(one for one in CASES if one.name == "beam in water")
     (outcome,) = run_real([wet], SAMPLES, None)

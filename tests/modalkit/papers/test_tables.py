@@ -39,6 +39,7 @@ def both(table: PaperTable, name: str, *, model: str | None = None) -> tuple[np.
     return printed[keep], ours[keep]
 
 
+@pytest.mark.long
 def test_there_are_four_tables(made: list[PaperTable]) -> None:
     assert [t.number for t in made] == [1, 2, 3, 4]
 
@@ -177,6 +178,7 @@ def test_the_update_becomes_a_record_of_the_contract() -> None:
     assert record["undetermined"] == []
 
 
+@pytest.mark.long
 def test_the_figures_lay_the_updated_model_over_the_test(walks: tuple[Walk, ...]) -> None:
     figures = figures_a(walks)
     assert list(figures) == ["a_fig_3", "a_fig_4", "a_fig_5", "a_fig_6"]

@@ -30,6 +30,7 @@ def column(table: PaperTable, name: str) -> np.ndarray:
     return table.table[name].to_numpy(float)
 
 
+@pytest.mark.long
 def test_there_are_tables_2_to_5_and_the_frac(made: dict[object, PaperTable]) -> None:
     assert list(made) == [2, 3, 4, 5, "Figs. 6 and 9"]
 
@@ -120,6 +121,7 @@ def test_every_format_carries_every_table(made: dict[object, PaperTable]) -> Non
     assert len(rows) == 1
 
 
+@pytest.mark.long
 def test_the_figures_are_drawn(worked: Work, tmp_path: Path) -> None:
     figures = worked.figures()
     assert list(figures) == [f"b_fig_{i}" for i in range(4, 10)]
@@ -144,6 +146,7 @@ def test_parameters_end_where_the_table_says(worked: Work, made: dict[object, Pa
     assert rows == len(staged.result.history) + 1
 
 
+@pytest.mark.long
 def test_the_command_writes_tables_and_figures(
     worked: Work, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

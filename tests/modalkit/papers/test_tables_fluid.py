@@ -27,6 +27,7 @@ def plate(made: list[PaperTable]) -> pd.DataFrame:
     return made[0].table.set_index(["model", "variant"])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("start", "variant", "bound"),
     [
@@ -78,6 +79,7 @@ def test_there_is_no_water_in_the_other_paper() -> None:
         fluid_work("B")
 
 
+@pytest.mark.long
 def test_a_study_that_accepts_its_effects_predicts_the_wet_test(
     tmp_path, made: list[PaperTable], plate: pd.DataFrame
 ) -> None:

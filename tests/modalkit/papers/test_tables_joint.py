@@ -15,6 +15,7 @@ def made() -> PaperTable:
     return joint_table()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("variant", "length", "sensor", "beam", "plate", "error"),
     [
@@ -40,6 +41,7 @@ def test_the_spread_is_said_to_be_the_result(made: PaperTable) -> None:
     assert "spread of the variants is the result" in text
 
 
+@pytest.mark.long
 def test_the_study_files_give_the_variant_with_e_shared() -> None:
     every = ("length", "sensor_mass", "E")
     sessions = [
@@ -55,6 +57,7 @@ def test_the_study_files_give_the_variant_with_e_shared() -> None:
     assert len(result.pairs) == 15
 
 
+@pytest.mark.long
 def test_weights_that_leave_a_mode_out_go_with_relative_ones() -> None:
     sessions = [
         open_study(read_study(sample_folder() / name / "study.toml")) for name in ("beam_dry", "plate_dry")

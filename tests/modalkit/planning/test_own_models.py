@@ -171,6 +171,7 @@ def test_seen_is_where_the_closed_form_says(tmp_path: Path) -> None:
     assert found.threshold(found.sigma[0]) == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.long
 def test_a_hypothesis_is_named_or_in_a_class_like_any_effect(chained: Forecast) -> None:
     assert "spring 3 is cracked" in chained.now.names
     assert chained.now.limits["spring 3 is cracked"].clear == 1.0
@@ -408,6 +409,7 @@ def test_a_place_on_a_plate_is_no_place_along_a_beam(tmp_path: Path) -> None:
         bench_of(read_study(path))
 
 
+@pytest.mark.long
 def test_the_command_prints_writes_and_draws(tmp_path: Path) -> None:
     path = study(tmp_path)
     document, report = tmp_path / "plan.json", tmp_path / "plan.html"

@@ -211,6 +211,7 @@ def test_every_severity_lies_on_its_own_curve(curves: tuple[Curve, ...], bench: 
         assert left < 0.02, curve.family.name
 
 
+@pytest.mark.long
 def test_the_sample_beam_cannot_tell_a_modulus_from_a_thickness_until_its_chain_is_calibrated(
     sample: Forecast,
 ) -> None:

@@ -43,6 +43,7 @@ def cases(sample: Forecast) -> tuple[Case, ...]:
     return choose(sample.now, separating(sample), 12, np.random.default_rng(3))
 
 
+@pytest.mark.long
 def test_half_of_the_cases_are_what_the_advice_newly_tells_apart(
     sample: Forecast, cases: tuple[Case, ...]
 ) -> None:

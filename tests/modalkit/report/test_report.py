@@ -287,6 +287,7 @@ def test_several_specimens_have_a_gap_each(tmp_path: Path) -> None:
     assert factors[0] < 1 < factors[1]
 
 
+@pytest.mark.long
 def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
     session = open_study(read_study(ROOT / "sample_data" / "beam_wet" / "study.toml"))
     made = diagnosis_with("beam", "named")
@@ -350,6 +351,7 @@ def test_long_records_are_drawn_on_fewer_lines() -> None:
     assert selected_lines(short) is short
 
 
+@pytest.mark.long
 def test_the_command_writes_report_and_figures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

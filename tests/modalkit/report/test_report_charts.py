@@ -217,6 +217,7 @@ def test_the_page_asks_for_nothing_that_is_not_in_the_package() -> None:
         )
 
 
+@pytest.mark.long
 def test_the_mesh_of_a_users_own_model_moves_as_its_test_points_do(tmp_path: Path) -> None:
     session = open_study(make_glider(tmp_path / "glider"))
     assert session.identified is not None

@@ -64,6 +64,7 @@ def test_update_reports_what_it_prints(call: Call, tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.long
 def test_a_plan_reports_its_lines(call: Call, tmp_path: Path) -> None:
     page = tmp_path / "plan.html"
     code, out, error = call("blind", BEAM / "study.toml", "--report", page)

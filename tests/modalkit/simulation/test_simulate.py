@@ -66,6 +66,7 @@ def pointed_at(data: Path, folder: Path, model_damping: str = "") -> Path:
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("effect", "name", "value"),
     [("sensor_mass:mass=0.0086", "mass", 0.0086), ("clamp_rotation:stiffness=1500", "stiffness", 1500.0)],
@@ -92,6 +93,7 @@ def test_what_was_put_in_is_named(run: Run, tmp_path: Path, effect: str, name: s
     assert estimate["low95"] < value < estimate["high95"]
 
 
+@pytest.mark.long
 def test_the_file_depends_on_study_and_seed_alone(run: Run, tmp_path: Path) -> None:
     files = [tmp_path / f"{i}.uff" for i in range(3)]
     for path, seed in zip(files, ("7", "7", "8"), strict=True):
@@ -101,6 +103,7 @@ def test_the_file_depends_on_study_and_seed_alone(run: Run, tmp_path: Path) -> N
     assert not np.array_equal(tests[0].points[2].motion, tests[2].points[2].motion)
 
 
+@pytest.mark.long
 def test_the_rig_is_that_of_the_study_s_own_hits() -> None:
     """The sample was made with these figures; window, rate and records are stated, the rest is heard."""
     made = simulate_test(read_study(STUDY), options=Options(hits=1))
@@ -116,6 +119,7 @@ def test_the_rig_is_that_of_the_study_s_own_hits() -> None:
     assert made.tests[0].decay == 8.0
 
 
+@pytest.mark.long
 def test_an_unknown_window_and_gain_are_in_the_data_and_not_stated(tmp_path: Path) -> None:
     study = read_study(STUDY)
     plain = simulate_test(study, seed=1, options=Options(hits=3))
@@ -282,6 +286,7 @@ def test_shear_and_a_sensor_at_once(tmp_path: Path) -> None:
     assert all_of_it / plain == pytest.approx((sheared / plain) * (heavy / plain), rel=2e-3)
 
 
+@pytest.mark.long
 def test_a_new_mounting_scatters_as_the_study_says() -> None:
     study = read_study(STUDY)
     quick = Options(hits=1, samples=256)
@@ -296,6 +301,7 @@ def test_a_new_mounting_scatters_as_the_study_says() -> None:
     assert np.sqrt(np.mean(np.log(gains) ** 2)) == pytest.approx(study.test.calibration, rel=0.8)
 
 
+@pytest.mark.long
 def test_a_mass_that_the_study_takes_out_is_on_the_model_before(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_text(
@@ -376,6 +382,7 @@ def test_nothing_is_left_where_nothing_can_be_written(run: Run, tmp_path: Path) 
     assert err.strip().count("\n") == 0
 
 
+@pytest.mark.long
 def test_a_beam_in_water_sounds_lower(tmp_path: Path) -> None:
     study = read_study(sample_file("beam_wet/study.toml"))
     effect = [parse_effect("fluid_added_mass:fluid_density=998")]
@@ -385,6 +392,7 @@ def test_a_beam_in_water_sounds_lower(tmp_path: Path) -> None:
     assert (ratio < 0.8).all()
 
 
+@pytest.mark.long
 def test_a_window_applied_on_reading_is_not_one_of_the_records(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_text(
@@ -398,6 +406,7 @@ def test_a_window_applied_on_reading_is_not_one_of_the_records(run: Run, tmp_pat
     assert made.test_setup.plan.response_floor == pytest.approx(plain.response_floor, rel=0.2)
 
 
+@pytest.mark.long
 def test_accepted_effects_are_in_the_model_already(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_text(

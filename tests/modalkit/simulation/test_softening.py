@@ -67,6 +67,7 @@ def identified(slope: float, scatter: float, seed: int) -> ModalModel:
     return processed.identify(band=BAND)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slope", [1e-4, 6e-4])
 @pytest.mark.parametrize("seed", [0, 2])
 def test_every_pair_is_of_one_mode_and_no_false_one_has_a_partner(slope: float, seed: int) -> None:
@@ -106,6 +107,7 @@ def test_a_mode_of_another_shape_between_true_ones_has_no_partner() -> None:
     assert any("has no partner in the model (best: MAC 0." in w for w in paired.warnings)
 
 
+@pytest.mark.long
 def test_frequencies_that_follow_the_level_are_warned_of() -> None:
     soft = identified(3e-4, 0.5, 1)
     message = [w for w in soft.warnings if "follow the force of the hits" in w]

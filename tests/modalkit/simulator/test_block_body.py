@@ -88,6 +88,7 @@ def predictor_of(drawn: Trial, folder: Path) -> Predictor:
     return Predictor(spec, test)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_hidden_is_what_the_library_says_at_its_values(kind: str, tmp_path: Path) -> None:
     """The rig changes parts, bolts, feet and bodies, the library the matrices of the same mesh that it was handed."""

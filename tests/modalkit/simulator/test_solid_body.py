@@ -92,6 +92,7 @@ def test_free_bar_on_springs() -> None:
         replace(BAR, clamped=()).real_modes(5)
 
 
+@pytest.mark.long
 @needs_ccx
 def test_solid_plate_is_the_thick_plate() -> None:
     corner = (PlateAttached(0.376, 0.2, mass=0.02, inertia=0.02 * 0.0016**2),)
@@ -126,6 +127,7 @@ def test_trial_hides_an_effect_in_bricks(name: str) -> None:
     assert all(0 <= x <= truth.size[0] for (x,) in truth.places)
 
 
+@pytest.mark.long
 @needs_ccx
 def test_trials_of_all_sorts_are_drawn() -> None:
     trials = [

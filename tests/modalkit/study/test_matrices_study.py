@@ -57,6 +57,7 @@ def exported(folder: Path, text: str = STUDY, spec: Spec = BEAM) -> Path:
     return path
 
 
+@pytest.mark.long
 def test_a_beam_by_its_matrices_is_the_beam(tmp_path: Path) -> None:
     """Same test, same frequencies before, same factor, though points and levels come by interpolation."""
     case = open_study(read_study(exported(tmp_path))).case
@@ -200,6 +201,7 @@ def scaled_to_millimetres(folder: Path) -> None:
     (folder / "nodes.csv").write_text("\n".join(lines) + "\n")
 
 
+@pytest.mark.long
 def test_a_beam_in_millimetres_and_tonnes_is_the_beam(tmp_path: Path) -> None:
     """Level and all: FRFs and masses are in SI, whatever the matrices came in."""
     path = exported(tmp_path)

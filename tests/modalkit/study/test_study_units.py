@@ -200,6 +200,7 @@ def test_effects_take_values_in_the_units_they_state(kind: str) -> None:
             assert si_value(f"1 {unit}", unit) == 1.0
 
 
+@pytest.mark.long
 def test_the_table_of_units_is_loaded_only_where_a_unit_is_written(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     for text, loaded in ((IN_SI, "False"), (WITH_UNITS, "True")):

@@ -12,6 +12,7 @@ from modalkit.workflow.identification import from_content
 from modalkit.workflow.processing_options import ProcessingOptions
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, 1])
 def test_products_are_left_out_and_named_with_their_sum(seed: int) -> None:
     joint = cantilever(-2e10)

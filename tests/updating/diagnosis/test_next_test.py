@@ -183,6 +183,7 @@ def test_a_cause_that_is_named_gets_a_test_that_confirms_it() -> None:
         assert alone.next_test
 
 
+@pytest.mark.long
 def test_the_unknown_gets_advice_and_no_figure() -> None:
     case = case_of()
     odd = case.measured.frequency * np.array([1.0, 1.3, 0.8, 1.2])

@@ -202,6 +202,7 @@ def test_an_effect_that_cannot_be_on_one_specimen_is_sought_on_the_other(
         assert part.samples.shape[1] == 3 * (kind == "plate")
 
 
+@pytest.mark.long
 def test_the_place_is_told_on_the_specimen_on_which_the_cause_acts() -> None:
     cases = [specimen_of("beam", "strip"), specimen_of("plate", "sheet", "orthotropy")]
     found = diagnose_together(cases, library=(ACROSS, LIBRARY["density"]))
@@ -210,6 +211,7 @@ def test_the_place_is_told_on_the_specimen_on_which_the_cause_acts() -> None:
     assert len(found.where.zones) == len(PLATE.regions)
 
 
+@pytest.mark.long
 def test_of_matrices_places_are_those_of_the_specimen_on_which_the_cause_acts() -> None:
     """Of two forms of one cause, a test point of both beams and a node set of the second, the first has the one."""
     spring, cases = LIBRARY["ground_spring"], []
@@ -239,6 +241,7 @@ def test_of_matrices_places_are_those_of_the_specimen_on_which_the_cause_acts() 
     assert found.locations == (pytest.approx(bare.measured.points[2]),)
 
 
+@pytest.mark.long
 def test_no_effect_on_either_is_no_gap() -> None:
     found = diagnose_together([specimen_of("beam", "strip"), specimen_of("plate", "sheet")], library=FEW)
     assert not found.significant

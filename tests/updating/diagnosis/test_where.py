@@ -56,6 +56,7 @@ def explained(problem: SpecimenProblem, name: str) -> Explanation:
     return explain(problem, candidate, starts=[first.best.coordinates], density=64)
 
 
+@pytest.mark.long
 def test_a_free_beam_has_its_soft_spot_on_either_side_if_only_frequencies_are_known() -> None:
     problem = free_beam(shapes=False)
     found = clusters(problem, explained(problem, "local_stiffness"), "stiffness")
@@ -65,6 +66,7 @@ def test_a_free_beam_has_its_soft_spot_on_either_side_if_only_frequencies_are_kn
     assert sum(c.weight for c in found) == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.long
 def test_shapes_tell_the_sides_apart() -> None:
     problem = free_beam(shapes=True)
     found = clusters(problem, explained(problem, "local_stiffness"), "stiffness")
@@ -73,6 +75,7 @@ def test_shapes_tell_the_sides_apart() -> None:
     assert found[0].weight == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_a_plate_hit_along_its_middle_does_not_know_its_left_from_its_right() -> None:
     points = np.stack([np.linspace(0.0752, 0.376, 5), np.full(5, 0.1)], axis=1)
     predictor = Predictor(PLATE, blank(points, top=300.0))
@@ -116,6 +119,7 @@ def compared(truth: str) -> tuple[SpecimenProblem, Search]:
     return problem, search(problem, [LIBRARY[n] for n in library])
 
 
+@pytest.mark.long
 def test_a_place_is_the_posterior_mean_with_its_spread() -> None:
     where = locate(*compared("soft"), verdict="named")
     assert where.location is not None
@@ -128,6 +132,7 @@ def test_a_place_is_the_posterior_mean_with_its_spread() -> None:
     assert sum(z.probability for z in where.zones) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_a_mass_on_the_sensor_is_at_its_node() -> None:
     where = locate(*compared("tip"), verdict="named")
     assert where.channel == "mass"
@@ -135,6 +140,7 @@ def test_a_mass_on_the_sensor_is_at_its_node() -> None:
     assert max(where.zones, key=lambda z: z.probability).name == "zone10"
 
 
+@pytest.mark.long
 def test_two_causes_have_two_places() -> None:
     problem, found = compared("both")
     assert set(found.compared[0].names) == {"lumped_mass", "local_stiffness"}
@@ -160,6 +166,7 @@ def test_points_of_the_measurement_are_named() -> None:
     assert where.points == (3,)
 
 
+@pytest.mark.long
 def test_what_nothing_explains_is_still_put_into_a_region() -> None:
     problem, found = compared("unknown")
     where = locate(problem, found, verdict="unknown")
@@ -168,6 +175,7 @@ def test_what_nothing_explains_is_still_put_into_a_region() -> None:
     assert sum(z.probability for z in where.zones) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_without_a_gap_there_is_no_place() -> None:
     where = locate(*compared("none"), verdict="none")
     assert (where.channel, where.location, where.locations, where.points) == ("none", None, (), ())
@@ -188,6 +196,7 @@ def test_the_modes_that_carry_the_gap_are_named() -> None:
     assert (seen.modes["frequency [sigma]"].drop([3, 4]).abs() < 3).all()
 
 
+@pytest.mark.long
 def test_contributions_of_noise_alone_are_of_order_one() -> None:
     squares = []
     for seed in range(12):

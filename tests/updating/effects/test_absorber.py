@@ -165,6 +165,7 @@ def test_beside_an_accepted_one_points_for_a_body_are_those_of_its_frequencies()
     assert len(promising_points(there)) < len(POINTS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", ["beam", "plate"])
 def test_the_added_mass_ratio_beside_an_accepted_one_is_the_fall_of_the_lowest_mode(place: str) -> None:
     """-2 d ln f per unit of added mass (Rayleigh), as a central difference at a fluid of no density.
@@ -285,6 +286,7 @@ def test_its_mode_takes_no_partner_from_another() -> None:
     assert paired.order.tolist() == [0, 1, 2, 3, 4]
 
 
+@pytest.mark.long
 def test_where_every_mode_is_the_models_it_is_not_searched() -> None:
     rng = np.random.default_rng(5)
     test = struck(specimen(rng), rng)

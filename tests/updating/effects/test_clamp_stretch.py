@@ -46,6 +46,7 @@ def rig(name: str, relative: float, low: float, high: float) -> np.ndarray:
 
 
 # the rig's mesh is good to 1 % of a shift, the model's to 2 %; of a quarter of an edge that shifts, to 5 %
+@pytest.mark.long
 @pytest.mark.parametrize("stretch", [(0.0, 0.1), (0.05, 0.15), (0.0, 0.05), (0.0437, 0.1611)])
 @pytest.mark.parametrize(
     ("name", "relative"),
@@ -81,6 +82,7 @@ def test_a_stretch_without_length_changes_nothing(name: str, low: float) -> None
     np.testing.assert_allclose(short, 0.0, atol=2e-4)
 
 
+@pytest.mark.long
 @settings(max_examples=10, deadline=None)
 @given(st.floats(0.0, 0.2), st.floats(0.0, 0.2), st.sampled_from(NAMES))
 def test_mirrored_stretches_give_the_same_frequencies(a: float, b: float, name: str) -> None:
@@ -106,6 +108,7 @@ def test_the_half_plane_resists_a_crack_as_published() -> None:
     assert _resistance(0.5, np.array([0.0]))[0] == pytest.approx(np.pi / 2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("edge", ["x0", "y1"])
 def test_the_small_model_is_the_full_one(name: str, edge: str) -> None:

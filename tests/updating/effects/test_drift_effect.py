@@ -76,6 +76,7 @@ def test_what_a_laboratory_does_in_an_hour_is_no_gap(rate: float) -> None:
     assert not found.significant
 
 
+@pytest.mark.long
 def test_no_drift_acquits_it_and_does_not_keep_another_from_being_named() -> None:
     rng = np.random.default_rng(9)
     test = with_trend(struck(specimen(rng, E=0.9), rng), 1e-4, 1e-5, rng)

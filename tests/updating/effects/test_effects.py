@@ -273,6 +273,7 @@ def test_frequencies_move_the_way_they_must(name: str, place: str) -> None:
         assert high == pytest.approx(low, rel=1e-9)
 
 
+@pytest.mark.long
 def test_shear_turns_a_thin_plate_into_a_thick_one() -> None:
     plate = LOOK["plate"]
     found = plate.predict(LIBRARY["shear"].state(plate, {}), count=5).frequency

@@ -66,6 +66,7 @@ def beside_bricks(
     return shift(found, plate().predict(count=COUNT).frequency), shift(theirs, bare)
 
 
+@pytest.mark.long
 def test_bricks_come_down_to_the_plate(tmp_path: Path) -> None:
     plain = plate().predict(count=COUNT).frequency
     coarse, fine = (
@@ -75,6 +76,7 @@ def test_bricks_come_down_to_the_plate(tmp_path: Path) -> None:
     assert fine.mean() < 0.7 * coarse.mean()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("loss", [0.7, -3.0])
 def test_a_rectangle_softer_and_stiffer(tmp_path: Path, loss: float) -> None:
     """The edges of the bricks' rectangle are sharp, those of the effect are not: a fifteenth of the shift."""
@@ -116,6 +118,7 @@ def test_a_span_of_a_beam(tmp_path: Path, low: float, high: float, loss: float) 
     assert moved == pytest.approx(shift(theirs, bare), abs=effect.fidelity * np.abs(moved).max(), rel=0.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("ratio", "shear_ratio", "coupling"),
     [(0.4, 0.5, 1.0), (2.0, 1.0, 1.0), (0.75, 1.4, 0.75**0.5), (2.0, 0.8, 1.3)],
@@ -136,6 +139,7 @@ def test_engineering_constants(tmp_path: Path, ratio: float, shear_ratio: float,
     assert found == pytest.approx(theirs, rel=0.02, abs=5e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stiffness", [2e3, 2e5])
 def test_a_spring_to_the_ground(tmp_path: Path, stiffness: float) -> None:
     at = (0.75 * L, 0.75 * W)
@@ -146,6 +150,7 @@ def test_a_spring_to_the_ground(tmp_path: Path, stiffness: float) -> None:
     assert found == pytest.approx(theirs, rel=0.02, abs=3e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("at", [(0.75, 0.75), (1.0, 1.0)])
 def test_a_body_beside_the_middle_of_the_thickness(tmp_path: Path, at: tuple[float, float]) -> None:
     """A steel cube of 10 g stands on the plate: its middle turns with the slope, m h^2 beside m.

@@ -186,6 +186,7 @@ def test_a_hinged_plate_of_four_constants(ratio: float, shear_ratio: float, coup
     assert found == pytest.approx(exact, rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("clamped", [("x0",), (), ("x0", "x1")])
 def test_a_sheet_that_shears_in_its_plane_as_it_likes_beside_the_rig(clamped: tuple[str, ...]) -> None:
     """Quintic elements that shear across the thickness too: twist and coupling each by itself, not their sum."""
@@ -391,11 +392,13 @@ def test_curvature_gathers_in_a_soft_spot_of_a_plate(cantilever: Predictor, spot
     assert off_by(cantilever, spotted(cantilever, spot), {}) < 0.02
 
 
+@pytest.mark.long
 def test_a_soft_spot_of_a_free_plate() -> None:
     free = Predictor(replace(PLATE, elements=(20, 10), clamped=()), blank(CORNERS))
     assert max(off_by(free, spotted(free, spot), {}) for spot in SPOTS) < 0.03
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("beside", "most"),
     [

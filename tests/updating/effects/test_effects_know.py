@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+import pytest
+
 from updating import LIBRARY
 from updating.effects import Lack
 from updating.models.base import FACTORS
@@ -81,6 +83,7 @@ def switches(tree: ast.Module, names: set[str]) -> list[str]:
     return found
 
 
+@pytest.mark.long
 def test_no_module_asks_for_an_effect_by_its_name() -> None:
     alone = set(LIBRARY) - set(FACTORS)
     for name, tree in sources():
@@ -89,6 +92,7 @@ def test_no_module_asks_for_an_effect_by_its_name() -> None:
         assert not switches(tree, set(LIBRARY)), f"{name}: {switches(tree, set(LIBRARY))}"
 
 
+@pytest.mark.long
 def test_no_module_asks_whether_a_model_is_imported_by_its_kind() -> None:
     for name, tree in sources():
         if not name.startswith(KINDS):

@@ -52,6 +52,7 @@ def test_a_thin_cantilever_in_water_is_damped_as_by_sader(mode: int) -> None:
     assert found.damping[mode] == pytest.approx(gamma.imag / (2 * (heavy + gamma.real)), rel=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("spec", [BEAM, PLATE], ids=["beam", "plate"])
 def test_losses_go_with_the_roots_of_viscosity_and_density(spec) -> None:
     points = POINTS if spec is BEAM else np.column_stack([POINTS, POINTS / 2])
@@ -154,6 +155,7 @@ def test_the_distances_that_the_study_does_not_state_are_searched_for() -> None:
         assert all(len(start) == len(names) for start in fluid.starts(predictor))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("around", [Environment(), Environment(bottom=0.05), Environment(free_surface=0.01)])
 @pytest.mark.parametrize("spec", [BEAM, PLATE], ids=["beam", "plate"])
 def test_what_is_read_from_the_table_is_what_is_solved(spec, around: Environment) -> None:
@@ -169,6 +171,7 @@ def test_what_is_read_from_the_table_is_what_is_solved(spec, around: Environment
         assert np.log(found / dry) == pytest.approx(np.log(exact / dry), rel=3e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tank", [(INF, INF), (0.2, INF), (INF, 0.3), (0.3, 0.4), (1.0, 0.2)])
 @pytest.mark.parametrize("clamped", [("x0",), ("x0", "x1")])
 def test_frequencies_and_levels_in_a_tank_are_those_of_the_rig(tank, clamped) -> None:
@@ -191,6 +194,7 @@ def test_frequencies_and_levels_in_a_tank_are_those_of_the_rig(tank, clamped) ->
     assert np.log(seen[1] / seen[0]) == pytest.approx(level, rel=0.08)
 
 
+@pytest.mark.long
 def test_a_fluid_in_the_model_says_its_density_wherever_its_surface_is() -> None:
     near = Predictor(
         BEAM, blank(POINTS), additions=(accept("fluid_added_mass", fluid_density=870.0, free_surface=0.01),)
@@ -202,6 +206,7 @@ def test_a_fluid_in_the_model_says_its_density_wherever_its_surface_is() -> None
     assert np.trace(lost[0]) < 0.99 * np.trace(lost[1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("spec", [BEAM, PLATE], ids=["beam", "plate"])
 def test_what_the_fluid_adds_in_the_first_mode_is_what_its_frequency_tells(spec) -> None:
     """Rayleigh's quotient: (f dry / f wet)^2 - 1 but for the change of the shape."""

@@ -30,6 +30,7 @@ def test_distinct_places_are_found_in_little_memory() -> None:
     assert most < 5e6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("measured", [(2,), (1, 2)])
 def test_a_spring_at_a_point_along_what_alone_is_measured_there_is_one_form(
     measured: tuple[int, ...],
@@ -55,6 +56,7 @@ def test_a_spring_at_a_point_along_what_alone_is_measured_there_is_one_form(
     assert any("along" in form.values for form in forms)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["lumped_mass", "ground_spring"])
 def test_where_every_node_is_a_test_point_there_are_no_others(name: str) -> None:
     """Forms at test points share all of the prior; the beam moves along z alone."""
@@ -71,6 +73,7 @@ def test_where_every_node_is_a_test_point_there_are_no_others(name: str) -> None
     assert away.max() < 1e-9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("clamped", [True, False])
 @pytest.mark.parametrize(("effect", "sizes"), [("lumped_mass", (0.03, 0.25)), ("ground_spring", (5e3, 1e6))])
 def test_the_node_where_something_sits_is_among_the_promising(

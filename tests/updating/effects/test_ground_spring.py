@@ -117,6 +117,7 @@ def left_by_axial_load(x: float, extent: float) -> float:
     return float(np.sqrt(2 * best.cost / 4))
 
 
+@pytest.mark.long
 def test_an_axial_load_does_what_a_spring_near_the_clamp_does_and_nothing_like_one_near_the_end() -> None:
     assert left_by_axial_load(0.35, 0.3) < 1.5
     assert left_by_axial_load(0.6, 0.3) > 6

@@ -69,6 +69,7 @@ def test_a_diagnosis_names_it(slope: float) -> None:
     assert stated.low95 < slope < stated.high95
 
 
+@pytest.mark.long
 def test_slopes_that_are_none_acquit_it() -> None:
     rng = np.random.default_rng(9)
     test = with_slopes(struck(specimen(rng, E=0.9), rng), 0.0, 4e-6, rng)
@@ -76,6 +77,7 @@ def test_slopes_that_are_none_acquit_it() -> None:
     assert found.sets == (("E",),)
 
 
+@pytest.mark.long
 def test_a_slope_per_newton_is_no_better_known_than_the_force() -> None:
     """The data hold slope times force alone: a hammer 3 % off makes a slope 3 % off, with nothing to show it."""
     rng = np.random.default_rng(8)

@@ -89,6 +89,7 @@ def ritz(spec: Spec, box: tuple[float, float, float, float], factor: float, mode
     return np.asarray(np.sqrt(values) / (2 * np.pi))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("clamped", [("x0",), ()])
 @pytest.mark.parametrize(
     ("box", "factor"),

@@ -29,6 +29,7 @@ def specimen(tmp_path_factory: pytest.TempPathFactory) -> Predictor:
     return Predictor(spec, seen_from(points, along, np.geomspace(20, 2000, COUNT)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", [4, 7])
 @pytest.mark.parametrize("quantile", [0.02, 0.15, 0.2, 0.5, 0.9])
 @pytest.mark.parametrize("name", ["ground_spring", "lumped_mass"])

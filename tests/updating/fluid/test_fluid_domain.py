@@ -62,6 +62,7 @@ def test_a_large_tank_is_unbounded():
     assert rigid(1.5, 1.0, domain=beyond) == pytest.approx(rigid(1.5, 1.0), rel=1e-6)
 
 
+@pytest.mark.long
 @given(gap=st.floats(0.05, 3.0), farther=st.floats(1.1, 3.0))
 @settings(max_examples=6)
 def test_nearer_walls_add_mass_and_a_nearer_surface_takes_it(gap, farther):
@@ -88,6 +89,7 @@ def test_a_plate_at_a_wall_is_half_of_its_mirrored_double(walls):
     assert 2.0 * at_wall[0, 0] == pytest.approx(whole[0, 0], rel=2e-4)
 
 
+@pytest.mark.long
 def test_closing_the_last_gap_to_the_wall_raises_the_mass_continuously():
     values = [
         rigid(1.0, 1.0, domain=FluidDomain(walls=(-gap, INF, -INF, INF))) for gap in (0.1, 0.01, 1e-3, 0.0)
@@ -96,6 +98,7 @@ def test_closing_the_last_gap_to_the_wall_raises_the_mass_continuously():
     assert values[-1] == pytest.approx(0.5 * rigid(2.0, 1.0), rel=2e-4)
 
 
+@pytest.mark.long
 def test_a_quarter_plate_in_the_corner_of_two_walls():
     corner = FluidDomain(walls=(0.0, INF, -INF, 1.0))
     assert 4.0 * rigid(1.0, 1.0, domain=corner) == pytest.approx(rigid(2.0, 2.0), rel=2e-4)

@@ -86,6 +86,7 @@ def test_thickness_acts_as_in_the_exact_flow_whatever_the_shape(ratio, shape):
     assert value == pytest.approx(exact_inertia(ratio, shape), rel=0.004 + 0.06 * ratio)
 
 
+@pytest.mark.long
 @given(thickness=st.floats(1e-4, 0.2), more=st.floats(1.05, 2.0))
 @settings(max_examples=6)
 def test_thickness_raises_the_added_mass(thickness, more):

@@ -97,6 +97,7 @@ def test_the_depth_of_the_layer_in_water():
     assert layer_depth(1e-3, 1000.0, 100.0) == pytest.approx(0.0564e-3, rel=1e-3)
 
 
+@pytest.mark.long
 @given(scale=st.floats(1e-2, 1e2), ratio=st.floats(0.3, 3.0), seed=st.integers(0, 99))
 @settings(max_examples=10)
 def test_slip_scales_is_symmetric_and_positive(scale, ratio, seed):

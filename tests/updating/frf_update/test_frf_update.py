@@ -94,6 +94,7 @@ def result() -> FrfUpdate:
     return updated(beam(TRUTH))
 
 
+@pytest.mark.long
 def test_section_and_damping_of_both_regions_come_back(result: FrfUpdate) -> None:
     assert result.converged
     for p in result.parameters:
@@ -125,18 +126,21 @@ def test_the_history_is_complete(result: FrfUpdate) -> None:
     assert result.history.iloc[-1]["bare.alpha"] == result.parameters[4].value
 
 
+@pytest.mark.long
 def test_a_window_s_decay_is_in_the_model_too() -> None:
     windowed = updated(beam(TRUTH), decay=6.0)
     for p in windowed.parameters:
         assert p.value == pytest.approx(wanted(p.name), abs=4 * p.sigma + 1e-3 * wanted(p.name))
 
 
+@pytest.mark.long
 def test_a_roving_hammer_gives_what_roving_sensors_give() -> None:
     both = [updated(beam(TRUTH), noise=1e-6, roving=roving) for roving in (False, True)]
     first, second = ([p.value for p in one.parameters] for one in both)
     assert first == pytest.approx(second, rel=1e-3)
 
 
+@pytest.mark.long
 def test_intervals_cover_over_noise() -> None:
     hits = []
     for seed in range(6):
@@ -220,6 +224,7 @@ def test_lines_are_chosen_for_what_they_tell() -> None:
     assert best > max(others)
 
 
+@pytest.mark.long
 def test_lines_may_be_given() -> None:
     measured, frfs = taken(beam(TRUTH))
     given = [20.0, 40.0, 60.0, 90.0, 150.0, 180.0, 250.0, 400.0]
@@ -231,6 +236,7 @@ def test_lines_may_be_given() -> None:
         update_frfs(Case("tape", beam(START), measured), frfs, parameters=["E"], lines=0)
 
 
+@pytest.mark.long
 def test_parameters_fall_into_stages_by_themselves() -> None:
     measured, frfs = taken(beam(TRUTH))
     case = Case("tape", beam(START), measured)
@@ -244,6 +250,7 @@ def test_parameters_fall_into_stages_by_themselves() -> None:
         update_frfs(case, frfs, parameters=["taped.volume"])
 
 
+@pytest.mark.long
 def test_what_level_and_section_share_is_not_told_apart() -> None:
     """A factor on stiffness and mass alike is the gain of the measurement: nothing moves, and it is said."""
     measured, frfs = taken(beam(TRUTH))
@@ -254,6 +261,7 @@ def test_what_level_and_section_share_is_not_told_apart() -> None:
     assert min(sigma.values()) > 0.1
 
 
+@pytest.mark.long
 def test_without_any_damping_the_identified_ratios_stand_in() -> None:
     plain = {k: v for k, v in START.items() if k in ("area", "inertia")}
     measured, frfs = taken(beam(TRUTH))
@@ -272,6 +280,7 @@ def test_a_step_never_leaves_the_bounds() -> None:
     assert up[0] > 0
 
 
+@pytest.mark.long
 def test_redrawn_data_scatter_as_the_standard_deviations_say() -> None:
     measured, frfs = taken(beam(TRUTH), noise=5e-3)
     case, rng = Case("tape", beam(START), measured), np.random.default_rng(0)

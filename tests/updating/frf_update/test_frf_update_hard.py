@@ -70,6 +70,7 @@ def found(result: FrfUpdate) -> dict[str, tuple[float, float]]:
     return {p.name: (p.value, p.sigma) for p in result.parameters}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", [0, 1, 2])
 def test_a_window_that_nobody_stated_comes_back(order: int) -> None:
     measured, frfs = hit_beam(CANTILEVER, "exponential_window", order=order, decay=6.0)
@@ -126,6 +127,7 @@ def test_peaks_far_apart_do_not_end_in_a_hollow_between(effect: str, name: str, 
     assert found(result)[effect][0] == pytest.approx(true, rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "stages",
     [
@@ -145,6 +147,7 @@ def test_stages_in_any_order_end_in_one_place(stages: list[list[str]]) -> None:
         assert got[f"{name}.E"][0] == pytest.approx(210e9 * factor, rel=5e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("factor", "message"),
     [(2.0, "times the level"), (-1.0, "the opposite sign")],
@@ -162,12 +165,14 @@ def test_one_bad_channel_is_named_and_left_out(factor: float, message: str) -> N
     assert len(result.frac) == 11
 
 
+@pytest.mark.long
 def test_good_channels_are_all_kept() -> None:
     measured, frfs = taken(beam(TRUTH), noise=2e-2)
     result = update_frfs(Case("tape", beam(START), measured), frfs, stages=[STRUCTURE, DAMPING], lines=60)
     assert not any("left out" in w for w in result.warnings)
 
 
+@pytest.mark.long
 def test_the_order_of_frfs_and_their_precision_do_not_matter() -> None:
     measured, frfs = taken(beam(TRUTH))
     case, mixed = Case("tape", beam(START), measured), np.random.default_rng(1).permutation(11)

@@ -50,6 +50,7 @@ def measured() -> tuple[Measured, MeasuredFrfs]:
     )
 
 
+@pytest.mark.long
 def test_regions_a_third_off_come_back_and_the_full_model_agrees() -> None:
     test, frfs = measured()
     case = Case("plate", plate(dict.fromkeys(FACTORS, 1.0)), test)

@@ -49,6 +49,7 @@ def found(test: Measured, truth: Prediction) -> HitScatter:
     return scatter
 
 
+@pytest.mark.long
 @settings(max_examples=15)
 @given(
     seed=st.integers(0, 10**6),
@@ -67,6 +68,7 @@ def test_each_part_is_found_whatever_the_weights_state(
     assert scatter.white == pytest.approx(own, rel=0.5)
 
 
+@pytest.mark.long
 def test_hits_that_only_are_noisy_say_little_of_places() -> None:
     places = []
     for seed in range(10):

@@ -37,6 +37,7 @@ def change(setting: Setting) -> np.ndarray:
     return found.reshape(*now.constants.shape, -1)
 
 
+@pytest.mark.long
 def test_constants_change_as_those_of_one_pole_that_is_fitted_to_two(without: Setting) -> None:
     own, lost = without.nominal, without.missed
     frequency = np.array([own.frequency[NEIGHBOUR], lost.frequency[0]])

@@ -41,6 +41,7 @@ def setting() -> Setting:
     return pose(Case("a plate", FREE, measured, tolerances=Tolerances({"E": 0.01})))[0].setting
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("point", "axis"), [(0, 0), (6, 1), (11, 1)])
 def test_a_hit_beside_its_point_changes_what_the_sensor_really_reads(
     setting: Setting, point: int, axis: int
@@ -89,6 +90,7 @@ def doubts(case: Case) -> np.ndarray:
     return np.asarray(np.abs(found[rows, strong, 2 * rows] / slopes[rows, strong]))
 
 
+@pytest.mark.long
 def test_after_a_baseline_of_the_same_marks_the_scatter_of_the_hits_is_all_that_is_in_doubt() -> None:
     tested, before = with_hits(stated(), 2e-4), with_hits(stated(), 2e-4)
     alone = Case("a plate", FREE, tested, tolerances=Tolerances({"E": 0.01}))

@@ -148,6 +148,7 @@ def test_what_explains_all_modes_needs_nothing_that_hangs_beside_it() -> None:
     assert found.sets == (("ground_spring",),)
 
 
+@pytest.mark.long
 def test_it_takes_up_as_much_of_its_neighbours_as_what_scatters_frequencies_makes_it(
     rng: np.random.Generator,
 ) -> None:

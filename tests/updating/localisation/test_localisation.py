@@ -99,6 +99,7 @@ def test_evidence_and_subspace_find_a_tenth_under_tolerances(zone: int) -> None:
     assert np.argmax(BestSubspace().scores(problem)) == zone
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["mass", "damping"])
 def test_the_kind_of_change_and_its_size_are_found_too(kind: str) -> None:
     found = compare_regions(altered(kind))
@@ -135,6 +136,7 @@ def brute(problem: SpecimenProblem, kind: Kind, region: int) -> float:
     return float(top + np.log(total)) - marginal(problem.compare(NOMINAL)).log_likelihood
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("zone", "loss"), [(4, 0.1), (2, 0.5)])
 @pytest.mark.parametrize("kind", ["stiffness", "mass"])
 def test_evidence_is_the_integral_over_the_severity(zone: int, loss: float, kind: Kind) -> None:
@@ -229,6 +231,7 @@ def test_a_model_without_damping_is_not_suspected_of_it() -> None:
     assert compare_regions(problem).kinds == ("stiffness", "mass")
 
 
+@pytest.mark.long
 def test_without_a_gap_evidence_is_the_prior_by_area() -> None:
     rng = np.random.default_rng(8)
     found = compare_regions(pose(case_of(struck(specimen(rng), rng), BEAM))[0])
@@ -236,6 +239,7 @@ def test_without_a_gap_evidence_is_the_prior_by_area() -> None:
     assert found.regions.max() < 0.6
 
 
+@pytest.mark.long
 def test_a_soft_spot_astride_two_regions_is_put_into_one_of_them() -> None:
     rng = np.random.default_rng(11)
     spot = (0.14, 0.16, 0.6)
@@ -282,6 +286,7 @@ def test_areas_and_places_of_a_plate() -> None:
     assert shares[2].max() == pytest.approx(0.5)
 
 
+@pytest.mark.long
 def test_the_order_of_the_points_does_not_matter() -> None:
     problem = soft(5, 0.3)
     test = problem.measured

@@ -152,6 +152,7 @@ EFFECTS = {
 }
 
 
+@pytest.mark.long
 def test_effects_do_to_a_thick_plate_what_they_do_to_a_thin_one() -> None:
     """At h / b = 1/63 shear takes half a per cent, so that shifts agree to some per cent of themselves."""
     found = []
@@ -166,6 +167,7 @@ def test_effects_do_to_a_thick_plate_what_they_do_to_a_thin_one() -> None:
         assert found[1][name] == pytest.approx(shift, abs=0.04 * np.abs(shift).max() + 1e-4), name
 
 
+@pytest.mark.long
 def test_the_full_model_has_the_soft_spot_of_the_reduced_one() -> None:
     predictor = Predictor(replace(THICK, elements=(16, 8)), blank(POINTS))
     values = EFFECTS["local_stiffness"]
@@ -223,6 +225,7 @@ def test_calculix_shells_agree(tmp_path: Path) -> None:
     assert np.abs(np.log(own / shells)).mean() < 0.15 * np.abs(np.log(thin / shells)).mean()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("clamped", [("x0",), ()])
 @pytest.mark.parametrize("thickness", [0.003175, 0.012])
 def test_a_thin_model_with_what_shear_changes_is_the_thick_one(

@@ -45,6 +45,7 @@ def clamped_plate(width: float, *, off: float) -> SpecimenProblem:
     return pose(Case("close", spec, measured, None, doubts))[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("off", [-1.5, 0.0, 1.5])
 def test_close_modes_that_a_tolerance_turns_fit(off: float) -> None:
     problem = clamped_plate(0.889 * SIDE, off=off)
@@ -54,6 +55,7 @@ def test_close_modes_that_a_tolerance_turns_fit(off: float) -> None:
     assert found.chi2 < 1.3 * found.count
 
 
+@pytest.mark.long
 def test_distant_modes_are_linearised_once() -> None:
     problem = clamped_plate(0.92 * SIDE, off=1.0)
     assert not problem.wide

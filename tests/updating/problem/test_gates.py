@@ -111,6 +111,7 @@ def test_beams_are_compared_with_exact_ones() -> None:
     assert not theory_error(evaluate(BEAM), np.arange(4)).theory.any()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("elements", [(12, 6), (30, 20)])
 def test_plates_are_compared_with_a_finer_mesh(elements: tuple[int, int]) -> None:
     """Finer than the estimate uses: the doubt may be too large by three, and too small by a third."""
@@ -125,6 +126,7 @@ def test_plates_are_compared_with_a_finer_mesh(elements: tuple[int, int]) -> Non
     assert np.all(np.abs(found) < 3 * np.abs(exact) + 1e-5)
 
 
+@pytest.mark.long
 def test_narrow_regions_and_accepted_theories_are_no_trouble() -> None:
     sliver = Region("sliver", (0.1, 0.1012), (0.0, 0.2))
     spec = replace(PLATE, elements=(64, 8), regions=(sliver,))

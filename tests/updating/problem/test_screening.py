@@ -80,6 +80,7 @@ def test_a_local_change_is_in_the_first_two_basins(name: str, form: int, values:
     assert min(abs(u[x] - values["x"] / FREE.length) for u in found[:2]) < 3 * HALF_A_STEP
 
 
+@pytest.mark.long
 def test_a_body_on_a_plate_is_in_the_first_four_basins() -> None:
     """Of a plate that is its own mirror image both ways."""
     spec = replace(PLATE, clamped=())

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from updating_cases import BEAM, blank
 
 from acquisition import Dof, FrfSet
@@ -31,6 +32,7 @@ def test_the_doubt_is_that_of_a_roving_sensor_only_where_it_roves() -> None:
     assert Candidate((LIBRARY["length"], sensor)).doubt_on(roving()).fidelity == sensor.fidelity_on(roving())
 
 
+@pytest.mark.long
 def test_frequencies_identified_from_roving_measurements_lie_within_it() -> None:
     predictor, rng = roving(), np.random.default_rng(5)
     spec = predictor.spec

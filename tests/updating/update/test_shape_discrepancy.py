@@ -107,6 +107,7 @@ def test_good_shapes_stated_as_they_are_stay_as_they_are() -> None:
     assert not any("error is taken as" in warning for warning in result.warnings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stated", [None, 0.02, 0.001])
 def test_a_spring_that_the_model_lacks_makes_the_shapes_worse_and_not_the_frequencies(
     stated: float | None,

@@ -32,6 +32,7 @@ def case_of(tolerance: float = 0.3, repeatability: float = 0.0) -> Case:
     return Case("bar", BEAM, test, None, Tolerances({"E": tolerance, "density": tolerance}))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("names", [NAMES, ["E", "density"]], ids=["determined", "a pair"])
 def test_the_spread_of_the_draws_is_the_sigma_of_the_update(names: list[str]) -> None:
     result = bootstrap(case_of(0.05), parameters=names, n=400, rng=np.random.default_rng(3))

@@ -27,12 +27,14 @@ def covered(
     return np.concatenate([module.inside(*module.recovered(seed, data, blind=blind)) for seed in seeds])
 
 
+@pytest.mark.long
 def test_a_few_random_specimens_are_recovered() -> None:
     inside = covered(range(200, 208))
     # some forty of 0.95: 0.82 is three and a half standard deviations below
     assert inside.mean() > 0.82
 
 
+@pytest.mark.long
 def test_modulus_and_density_of_everything_are_named_as_a_pair() -> None:
     module = recovery()
     assert all(module.named(seed) for seed in range(200, 203))

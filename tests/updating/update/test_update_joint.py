@@ -93,6 +93,7 @@ def test_a_modulus_for_each() -> None:
     assert {p.name: p.sigma for p in result.parameters}["length"] == pytest.approx(0.0018, rel=0.2)
 
 
+@pytest.mark.long
 def test_one_cause_alone_fits_the_plate_worse() -> None:
     plate = case_of(replace(PLATE, regions=()))
     modulus = update(plate, parameters=["E"], weights="relative").rms_percent()

@@ -137,6 +137,7 @@ def test_length_and_modulus_of_one_uniform_beam_are_named_as_undetermined() -> N
     assert set(result.undetermined) == {"length (known)", "E (known)", "length (clamped)", "E (clamped)"}
 
 
+@pytest.mark.long
 def test_stated_sigma_covers_the_truth_as_often_as_it_says() -> None:
     rng = np.random.default_rng(11)
     model = replace(BEAM, regions=PARTS)

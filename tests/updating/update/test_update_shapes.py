@@ -83,6 +83,7 @@ def test_shapes_tell_a_beam_from_its_mirror_image() -> None:
     assert result.undetermined == ()
 
 
+@pytest.mark.long
 def test_draws_of_frequencies_and_shapes_scatter_as_the_update_says() -> None:
     case = case_of(measured_on(turned(root=0.8)))
     result = bootstrap(
