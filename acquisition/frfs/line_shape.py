@@ -84,20 +84,21 @@ def _averaged(z: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """
     turn = 2j * np.pi
     value, slope = np.zeros_like(z), np.zeros_like(z)
+    grown = np.expm1(z)  # the same after a whole turn
     for shift, ramp, even in ((0.0, 2 / 3, 0.0), (turn, 1 / 6, 0.5 / turn), (-turn, 1 / 6, -0.5 / turn)):
-        one, two, three = _quotients(z + shift)
+        one, two, three = _quotients(z + shift, grown)
         value += ramp * two + even * one
         slope += ramp * (two - 2.0 * three) + even * (one - two)
     return value, slope
 
 
-def _quotients(z: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return (e^z - 1) / z, (e^z - 1 - z) / z^2 and (e^z - 1 - z - z^2 / 2) / z^3."""
+def _quotients(z: ComplexArray, grown: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return g / z, (g - z) / z^2 and (g - z - z^2 / 2) / z^3 of g = e^z - 1."""
     near = np.abs(z) < _SMALL
-    away: ComplexArray = np.asarray(np.where(near, 1.0, z), complex)
-    one: ComplexArray = np.asarray(np.expm1(away) / away, complex)
-    two: ComplexArray = np.asarray((one - 1.0) / away, complex)
-    three: ComplexArray = np.asarray((two - 0.5) / away, complex)
+    inverse = np.asarray(1.0 / np.where(near, 1.0, z), complex)
+    one = np.asarray(grown * inverse)
+    two = np.asarray((one - 1.0) * inverse)
+    three = np.asarray((two - 0.5) * inverse)
     if near.any():
         factor = [np.cumprod(1.0 / np.arange(first, first + _TERMS)) for first in (1, 2, 3)]
         small = z[near][:, None] ** np.arange(_TERMS)
