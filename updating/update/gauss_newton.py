@@ -4,11 +4,11 @@ A step is the least-squares solution of the linearised problem, by singular valu
 stay where they are. A parameter at a bound that the step would push further stays there, and the others step as if it
 were known. A step is halved until the misfit falls.
 
-``scipy.optimize.least_squares`` solves such problems, too. It is not used: its bounds keep iterates off the ends of
-ranges, where parameters of effects often rest; directions without information drift in it; it evaluates residual and
-sensitivities apart, where here one evaluation of a model gives both; and weights that follow the model, or a choice
-between two sensitivities of one step, have no place in it. The diagnosis maximises a likelihood whose noise depends on
-the parameters, which is no sum of squares: see :mod:`updating.diagnosis.search.fit`.
+``scipy.optimize.least_squares`` solves such problems, too. It has no place for what these iterations have: weights that
+follow the model, a choice between two sensitivities of one step, singular values cut off at the noise, a secant of the
+residuals' curvature, and a second-order correction behind a step; and it asks for residuals and sensitivities apart,
+where one evaluation of a model gives both. The diagnosis maximises a likelihood whose noise depends on the parameters,
+which is no sum of squares: see :mod:`updating.diagnosis.search.fit`.
 """
 
 from __future__ import annotations
