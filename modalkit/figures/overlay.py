@@ -26,6 +26,7 @@ from modalkit.figures.style import (
     tidy,
 )
 from modalkit.figures.test.frf import NAMES
+from modalkit.views.charts.frfs import chosen_frfs
 from updating.correlation.frfs import CorrelatedFrfs
 
 TALL, SHORT, BLOCK = 2.35, 0.75, 4.4
@@ -64,23 +65,6 @@ def overlay_figure(both: CorrelatedFrfs, *, count: int = 4) -> Figure:
         left = MARGIN + 0.75 + (i % columns) * (width + 0.95)
         _block(figure, both, row, why, left=left, top=top + (i // columns) * BLOCK, width=width)
     return figure
-
-
-def chosen_frfs(both: CorrelatedFrfs, count: int) -> dict[int, str]:
-    """Return the rows that are shown and why: drive point, best, worst, then what lies evenly between them."""
-    order = np.argsort(-both.frac, kind="stable")
-    pairs = zip(both.measured.responses, both.measured.references, strict=True)
-    drive = [i for i, (r, f) in enumerate(pairs) if (r.node, r.axis) == (f.node, f.axis)]
-    stated = [(i, "drive point") for i in drive[:1]]
-    stated += [(int(order[0]), "best FRAC"), (int(order[-1]), "worst FRAC")]
-    stated += [(int(order[k]), "") for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
-    chosen: dict[int, str] = {}
-    for row, why in stated:
-        if row in chosen:
-            chosen[row] = ", ".join(filter(None, (chosen[row], why)))
-        elif len(chosen) < max(count, 1):
-            chosen[row] = why
-    return chosen
 
 
 def _block(

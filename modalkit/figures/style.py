@@ -33,6 +33,15 @@ ORANGE = "#d9590a"
 GREEN = "#128a66"
 """A third series, where one is needed."""
 
+NAMED = {
+    "ink": INK, "muted": MUTED, "faint": FAINT, "pale": PALE, "band": BAND, "blue": BLUE, "orange": ORANGE,
+    "green": GREEN, "red": "#c0263a", "clamp": MUTED,
+}  # fmt: skip
+"""Colours by the names that charts use."""
+
+MARKERS = {"dot": "o", "square": "s", "diamond": "D", "down": "v", "up": "^", "cross": "x", "right": ">"}
+"""Marks by the names that charts use."""
+
 SERIES = (BLUE, ORANGE, GREEN, "#8c5fa8", "#b08900", "#5b6672")
 """Series in the order of their use."""
 

@@ -13,13 +13,13 @@ from modalkit.planning.document import to_json
 from modalkit.planning.note import brings, note, offered
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check
-from modalkit.report.charts.matrix import matrix_chart
 from modalkit.report.document import Document, Section
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from modalkit.report.page import page
 from modalkit.report.provenance import Basis, provenance
 from modalkit.study.read import Study
 from modalkit.views.chart import Axis, Chart, Series
+from modalkit.views.charts.matrix import matrix_chart
 
 
 def plan_report(

@@ -10,10 +10,6 @@ import pandas as pd
 
 from acquisition.display import counted
 from acquisition.quantities import percent, raised
-from modalkit.figures.diagnosis.errors import ModeErrors
-from modalkit.report.charts.gap import gap_chart
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.update import course_charts, factors_chart, frac_chart
 from modalkit.report.document import Document, Part, Section
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from modalkit.report.page import page
@@ -21,6 +17,10 @@ from modalkit.report.provenance import Basis, provenance
 from modalkit.report.sections import the_warnings
 from modalkit.report.tested import sections_of_all
 from modalkit.views.chart import Chart
+from modalkit.views.charts.gap import gap_chart
+from modalkit.views.charts.matrix import matrix_chart
+from modalkit.views.charts.update import course_charts, factors_chart, frac_chart
+from modalkit.views.mode_errors import ModeErrors
 from modalkit.views.shapes import Changed
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from matplotlib.figure import Figure
 
 from modalkit.figures.diagnosis.causes import draw_causes
-from modalkit.figures.diagnosis.errors import ModeErrors, mode_errors
-from modalkit.figures.diagnosis.fitted import Fitted
-from modalkit.figures.diagnosis.held_out import draw_held_out, rivals
+from modalkit.figures.diagnosis.held_out import draw_held_out
 from modalkit.figures.diagnosis.where import draw_channels, draw_where
 from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import (
@@ -26,8 +24,11 @@ from modalkit.figures.style import (
     new_figure,
     place,
 )
-from modalkit.figures.words import answer, evidence
 from modalkit.output.summary import separated
+from modalkit.output.words import answer, evidence
+from modalkit.views.charts.causes import rivals
+from modalkit.views.mode_errors import ModeErrors, mode_errors
+from modalkit.workflow.fitted import Fitted
 from updating import Case, Diagnosis
 
 LEFT, MIDDLE, RIGHT = (1.3, 2.5), (4.5, 3.3), (8.35, 3.3)

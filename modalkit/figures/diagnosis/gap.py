@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from acquisition.display import counted
-from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import MARGIN, WIDTH, caption, caption_height, new_figure, place
-from modalkit.figures.words import METRICS
+from modalkit.output.words import METRICS
+from modalkit.views.mode_errors import ModeErrors
 from updating import Diagnosis
 
 ROW, INDENT = 0.3, 1.25

@@ -9,21 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from modalkit.figures.style import BLUE, FAINT, GRID, INK, MUTED, SMALL, TEXT, shortened, tidy
-from modalkit.figures.words import METRICS, short
+from modalkit.output.words import METRICS
+from modalkit.views.charts.causes import rivals
 from updating import Diagnosis
-
-
-def rivals(diagnosis: Diagnosis) -> list[tuple[str, float, bool]]:
-    """Return (name, gap on held-out modes [%], whether it is the best explanation) from worst to best known."""
-    shrink, ranking = diagnosis.shrink, diagnosis.ranking
-    rows = [("the unchanged model", shrink.held_before, False)]
-    rows.append(("tolerances alone", shrink.held_nuisance, False))
-    if shrink.held_runner_up is not None:
-        name = short(ranking[1].effects) if len(ranking) > 1 else "the runner-up"
-        rows.append((f"runner-up: {name}", shrink.held_runner_up, False))
-    if ranking:
-        rows.append((short(ranking[0].effects), shrink.held_after, diagnosis.verdict != "none"))
-    return rows
 
 
 def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool = False) -> None:

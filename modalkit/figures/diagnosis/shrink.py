@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from modalkit.figures.diagnosis.held_out import draw_held_out, rivals
+from modalkit.figures.diagnosis.held_out import draw_held_out
 from modalkit.figures.style import MARGIN, WIDTH, caption, caption_height, new_figure, place
+from modalkit.views.charts.causes import rivals
 from updating import Diagnosis
 
 ROOM, ROW = 4.2, 0.42

@@ -25,12 +25,10 @@ from modalkit.figures.style import (
     place,
     text_width,
 )
+from modalkit.views.charts.matrix import alike
 
 WRITTEN = 14
 """Up to so many rows or columns the values are written into the cells."""
-
-CONFUSED = 0.3
-"""From this MAC on two modes are reported as similar."""
 
 
 def mac_figure(
@@ -138,19 +136,3 @@ def auto_mac_figure(modal: ModalData) -> Figure:
     return mac_figure(
         matrix, names, names, title=alike(matrix), note=note, row_name="mode", column_name="mode"
     )
-
-
-def alike(matrix: FloatArray) -> str:
-    """State which modes look most alike."""
-    if len(matrix) < 2:
-        return "One mode"
-    if not np.isfinite(matrix).all():
-        return "One degree of freedom: there is no shape to compare"
-    apart = matrix - np.eye(len(matrix))
-    i, j = np.unravel_index(int(apart.argmax()), apart.shape)
-    first, second = sorted((int(i) + 1, int(j) + 1))
-    if apart[i, j] < 0.1:
-        return "All modes are distinct"
-    if apart[i, j] < CONFUSED:
-        return f"All modes differ; {first} and {second} are the most alike, by {100 * apart[i, j]:.0f} %"
-    return f"Modes {first} and {second} look alike by {100 * apart[i, j]:.0f} %"

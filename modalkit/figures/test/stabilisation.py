@@ -9,17 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from acquisition.arrays import BoolArray
-from acquisition.display import counted
 from acquisition.quantities import bare_hertz, hertz
 from identification import ModalModel, pole_origins
 from identification.pole_reasons import Origins
 from modalkit.figures.style import (
-    BLUE,
     FAINT,
-    GREEN,
-    INK,
     MARGIN,
+    MARKERS,
     MUTED,
+    NAMED,
     ORANGE,
     SMALL,
     WIDTH,
@@ -31,27 +29,10 @@ from modalkit.figures.style import (
     tidy,
 )
 from modalkit.figures.test.modes import mark_modes
+from modalkit.views.charts.poles import KINDS, ORIGINS, poles_title, rejected_columns
 
 LISTED = 24
 """Frequencies of so many modes are listed; of more, the first and the last [-]."""
-
-KINDS = {
-    "new": ("new at its order", "x", 14, FAINT),
-    "short": ("chain too short", "o", 9, FAINT),
-    "outside": ("outside the band", "^", 14, MUTED),
-    "pruned": ("struck off by the fit", "s", 13, ORANGE),
-    "background": ("not determined by the data", "D", 13, ORANGE),
-    "dropped": ("dropped by hand", "P", 20, INK),
-    "mode": ("a mode", "o", 11, BLUE),
-}
-"""What became of a pole: in words, and how it is drawn."""
-
-ORIGINS = {
-    "chain": ("mode from the chart", "v", BLUE),
-    "refinement": ("mode added by the refinement", "D", ORANGE),
-    "named": ("mode picked by hand", "s", GREEN),
-}
-"""Where a mode comes from, in the row above the orders."""
 
 LINE = 0.19
 """Height of a line under the chart [in]."""
@@ -98,33 +79,6 @@ def stabilisation_figure(
             MARGIN / WIDTH, 1 - (top + 4.9 + LINE * k) / tall, line, fontsize=SMALL, color=MUTED, va="top"
         )
     return figure
-
-
-def poles_title(origins: Origins, shown: int) -> str:
-    """State how many modes there are and where they come from, and how many stable columns are none."""
-    stable = sum(origin == "chain" for origin in origins.modes)
-    parts = [f"{counted(len(origins.modes), 'mode')}: {stable} of {counted(shown, 'pole')}"]
-    for origin, meaning in (("refinement", "added by the refinement"), ("named", "picked by hand")):
-        if count := sum(o == origin for o in origins.modes):
-            parts.append(f"{count} {meaning}")
-    if len(parts) == 1:
-        parts = [f"{counted(stable, 'mode')} of {counted(shown, 'pole')}"]
-    left = sum(reason.kind in ("pruned", "background", "dropped") for reason in origins.reasons)
-    if left:
-        parts.append(f"{counted(left, 'stable column')} not taken")
-    return "; ".join(parts)
-
-
-def rejected_columns(model: ModalModel, origins: Origins) -> list[tuple[float, str]]:
-    """Return frequency [Hz] and reason of every stable column in the band that is no mode, rising."""
-    low, high = model.band
-    found = []
-    for chain, reason in enumerate(origins.reasons):
-        if reason.kind in ("pruned", "background", "dropped"):
-            middle = float(np.median(model.chart.frequency[origins.chain == chain]))
-            if low <= middle <= high:
-                found.append((middle, reason.text))
-    return sorted(found)
 
 
 def _reason(i: int, column: tuple[float, str]) -> list[str]:
@@ -177,15 +131,15 @@ def _poles(axes: Axes, model: ModalModel, origins: Origins) -> None:
     axes.patch.set_alpha(0.0)
     order = chart.orders[chart.level]
     kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
-    for which, (name, marker, size, colour) in KINDS.items():
+    for which, (name, marker, colour, size) in KINDS.items():
         keep = _shown(model) & (kind == which)
         if keep.any():
             axes.scatter(
                 chart.frequency[keep],
                 order[keep],
-                marker=marker,
-                s=size,
-                color=colour,
+                marker=MARKERS[marker],
+                s=(1.5 * size) ** 2,
+                color=NAMED[colour],
                 linewidth=0.8,
                 label=name,
                 zorder=2.5,
@@ -199,7 +153,15 @@ def _modes(axes: Axes, model: ModalModel, origins: Origins) -> None:
         rows = [r for r, origin in enumerate(origins.modes) if origin == which]
         if rows:
             at = model.modal.frequency[rows]
-            axes.plot(at, np.full(len(rows), top), marker, color=colour, markersize=6, label=name, zorder=3)
+            axes.plot(
+                at,
+                np.full(len(rows), top),
+                MARKERS[marker],
+                color=NAMED[colour],
+                markersize=6,
+                label=name,
+                zorder=3,
+            )
     axes.set_ylim(0, 1.09 * float(model.chart.orders.max()))
     axes.legend(
         loc="lower left",

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from modalkit.figures import diagnosis_figure
 from modalkit.figures.diagnosis import gap_figure
-from modalkit.figures.diagnosis.errors import ModeErrors, mode_errors
-from modalkit.figures.words import answer
+from modalkit.output.words import answer
+from modalkit.views.mode_errors import ModeErrors, mode_errors
 from updating.diagnosis.answer.result import ParameterEstimate, Ranked
 from updating.problem.width import stiffening
 

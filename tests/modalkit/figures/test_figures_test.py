@@ -16,7 +16,7 @@ from acquisition.quantities import hertz
 from identification import mac, pole_origins
 from modalkit.figures import auto_mac_figure, frf_figure, hits_figure, mac_figure, stabilisation_figure
 from modalkit.figures.test.frf import pick
-from modalkit.figures.test.stabilisation import poles_title
+from modalkit.views.charts.poles import poles_title
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 50])

@@ -14,9 +14,9 @@ from conforming import departures
 from acquisition import Dof, FrfSet
 from modalkit.cli import main
 from modalkit.figures import overlay_figure
-from modalkit.figures.overlay import chosen_frfs
 from modalkit.output.schemas import CorrelationDocument
 from modalkit.samples import sample_file
+from modalkit.views.charts.frfs import chosen_frfs
 from updating.correlation.frfs import CorrelatedFrfs
 
 

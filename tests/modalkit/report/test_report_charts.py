@@ -17,16 +17,17 @@ from test_localisation_figure import diagnosis_with
 
 from acquisition import Dof, FrfSet
 from identification import pole_origins
-from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.output.whole import plain
-from modalkit.report.charts.causes import causes_chart, closing_chart
-from modalkit.report.charts.gap import gap_chart, gap_title
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.place import place_chart
-from modalkit.report.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, poles_chart
-from modalkit.report.charts.thin import FEWEST, LARGEST, common_lines
 from modalkit.report.scripts import scripts
 from modalkit.views.chart import Chart, rounded
+from modalkit.views.charts.causes import causes_chart, closing_chart
+from modalkit.views.charts.gap import gap_chart, gap_title
+from modalkit.views.charts.matrix import matrix_chart
+from modalkit.views.charts.place import place_chart
+from modalkit.views.charts.poles import poles_chart
+from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart
+from modalkit.views.charts.thin import FEWEST, LARGEST, common_lines
+from modalkit.views.mode_errors import ModeErrors
 from modalkit.views.shapes import Beside, shapes_page
 from modalkit.workflow.case import open_study
 from updating.correlation.correlate import correlate

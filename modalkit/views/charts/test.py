@@ -11,27 +11,10 @@ from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import counted
 from acquisition.quantities import hertz, percent
 from identification import ModalModel, auto_mac, cmif
-from identification.pole_reasons import Origins
-from modalkit.figures.shapes.matrix import alike
-from modalkit.figures.test import stabilisation
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.thin import common_lines
 from modalkit.views.chart import Axis, Chart, Choices, Series
+from modalkit.views.charts.matrix import alike, matrix_chart
+from modalkit.views.charts.thin import common_lines
 from modalkit.views.hits import frf_names
-
-KINDS = {
-    "new": ("cross", "faint", 2.6),
-    "short": ("dot", "faint", 2.6),
-    "outside": ("up", "muted", 3.0),
-    "pruned": ("square", "orange", 3.0),
-    "background": ("diamond", "orange", 3.0),
-    "dropped": ("cross", "red", 4.0),
-    "mode": ("dot", "blue", 2.6),
-}
-"""How poles are drawn by what became of them; the words are those of the figure."""
-
-ORIGINS = {"chain": ("down", "blue"), "refinement": ("diamond", "orange"), "named": ("square", "green")}
-"""How modes are drawn above the chart by where they come from."""
 
 
 def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
@@ -104,52 +87,6 @@ def size(values: ComplexArray, keep: IntArray) -> FloatArray:
 def ends(frfs: FrfSet) -> tuple[float, float]:
     """Return the ends of the axis [Hz]."""
     return float(frfs.frequency[0]), float(frfs.frequency[-1])
-
-
-def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Chart:
-    """Return every pole of every order with what became of it, and above them every mode with where it comes from."""
-    chart = model.chart
-    low, high = model.band
-    edge = 0.02 * (high - low)
-    near = (chart.frequency >= low - edge) & (chart.frequency <= high + edge)
-    order = chart.orders[chart.level]
-    kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
-    keep, _ = common_lines(model.frfs, 60)
-    total = size(np.abs(model.frfs.values).sum(axis=0), keep)
-    series = [Series("sum of the FRFs", "line", model.frfs.frequency[keep], total, "faint", {"right": True})]
-    for which, (symbol, colour, radius) in KINDS.items():
-        rows = np.flatnonzero(near & (kind == which))
-        text = [
-            f"{chart.frequency[i]:.3f} Hz, damping {100 * chart.damping[i]:.3f} %, order {order[i]}\n"
-            f"{origins.reasons[origins.chain[i]].text}"
-            for i in rows
-        ]
-        more = {"text": text, "symbol": symbol, "size": radius}
-        if len(rows):
-            series.append(
-                Series(
-                    stabilisation.KINDS[which][0], "points", chart.frequency[rows], order[rows], colour, more
-                )
-            )
-    top = 1.06 * float(chart.orders.max())
-    for which, (symbol, colour) in ORIGINS.items():
-        modes = [r for r, origin in enumerate(origins.modes) if origin == which]
-        hz = [float(model.modal.frequency[r]) for r in modes]
-        meaning = stabilisation.ORIGINS[which][0]
-        text = [f"mode {r + 1}: {model.modal.frequency[r]:.3f} Hz\n{meaning}" for r in modes]
-        more = {"text": text, "symbol": symbol, "size": 5}
-        if modes:
-            series.append(Series(meaning, "points", hz, [top] * len(hz), colour, more))
-    return Chart(
-        name,
-        stabilisation.poles_title(origins, int(np.sum(near))),
-        "Every pole of every order by what became of it; modes stand above, dotted below.",
-        Axis("frequency [Hz]", range=(low - edge, high + edge)),
-        Axis("model order", range=(0.0, 1.04 * top)),
-        series,
-        360.0,
-        more={"lines": [float(f) for f in model.modal.frequency]},
-    )
 
 
 def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:

@@ -1,4 +1,4 @@
-"""The figures of a diagnosis: one list for the report and for ``--figures``."""
+"""The figures of a diagnosis: what ``--figures`` writes."""
 
 from __future__ import annotations
 
@@ -7,17 +7,13 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from modalkit.figures import diagnosis_figure, frf_figure, localisation_figure
-from modalkit.figures.diagnosis import (
-    Fitted,
-    fitted,
-    gap_figure,
-    mode_errors,
-    overlaid,
-    overlaid_figure,
-    shrink_figure,
-)
+from modalkit.figures.diagnosis import diagnosis_figure, gap_figure, overlaid_figure, shrink_figure
+from modalkit.figures.diagnosis.localisation import localisation_figure
+from modalkit.figures.test.frf import frf_figure
+from modalkit.views.mode_errors import mode_errors
 from modalkit.workflow.case import Session
+from modalkit.workflow.fitted import Fitted, fitted
+from modalkit.workflow.overlaid import overlaid
 from updating import Diagnosis
 
 

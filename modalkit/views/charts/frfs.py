@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.display import counted
-from modalkit.figures.diagnosis.frfs import Overlaid
-from modalkit.report.charts.test import ends, size
-from modalkit.report.charts.thin import common_lines
 from modalkit.views.chart import Axis, Chart, Choices, Series
+from modalkit.views.charts.test import ends, size
+from modalkit.views.charts.thin import common_lines
 from modalkit.views.hits import frf_names
+from modalkit.workflow.overlaid import Overlaid
+from updating.correlation.frfs import CorrelatedFrfs
 
 
 def overlaid_chart(both: Overlaid, name: str = "frfs", *, tests: int = 1) -> Chart:
@@ -63,3 +64,20 @@ def overlaid_title(both: Overlaid) -> str:
     """State the median FRAC before and after."""
     median = f"{counted(len(both.before.frac), 'FRF')}: median FRAC {np.median(both.before.frac):.3f}"
     return median if both.after is None else f"{median} before, {np.median(both.after.frac):.3f} after"
+
+
+def chosen_frfs(both: CorrelatedFrfs, count: int) -> dict[int, str]:
+    """Return the rows that are shown and why: drive point, best, worst, then what lies evenly between them."""
+    order = np.argsort(-both.frac, kind="stable")
+    pairs = zip(both.measured.responses, both.measured.references, strict=True)
+    drive = [i for i, (r, f) in enumerate(pairs) if (r.node, r.axis) == (f.node, f.axis)]
+    stated = [(i, "drive point") for i in drive[:1]]
+    stated += [(int(order[0]), "best FRAC"), (int(order[-1]), "worst FRAC")]
+    stated += [(int(order[k]), "") for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
+    chosen: dict[int, str] = {}
+    for row, why in stated:
+        if row in chosen:
+            chosen[row] = ", ".join(filter(None, (chosen[row], why)))
+        elif len(chosen) < max(count, 1):
+            chosen[row] = why
+    return chosen

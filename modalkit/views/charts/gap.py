@@ -9,9 +9,9 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import percent, sigmas
-from modalkit.figures.diagnosis.errors import ModeErrors
-from modalkit.figures.words import METRICS
+from modalkit.output.words import METRICS
 from modalkit.views.chart import Axis, Chart, Series
+from modalkit.views.mode_errors import ModeErrors
 
 
 def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") -> Chart:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from acquisition.display import counted
 from acquisition.quantities import bare_p, probability
-from modalkit.figures.diagnosis.causes import explanations
-from modalkit.figures.diagnosis.held_out import rivals
-from modalkit.figures.words import METRICS, short
+from modalkit.output.words import METRICS, parameters, short
 from modalkit.views.chart import Axis, Chart, Series
 from updating import Diagnosis
 
@@ -15,6 +15,43 @@ ROWS = 10
 
 LEAST = 1e-4
 """What is less is drawn as that, on a logarithmic axis [%]."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """One row of the causes: its name, its parameters in words, its probability, and whether it is the answer."""
+
+    label: str
+    detail: str
+    probability: float
+    answer: bool
+
+
+def explanations(diagnosis: Diagnosis) -> list[Explanation]:
+    """Return the rows: those of the answer, then the rest by probability, with the tolerances among them."""
+    chosen = set(diagnosis.sets)
+    none = diagnosis.verdict == "none"
+    alone = max(0.0, 1.0 - sum(row.probability for row in diagnosis.ranking))
+    rows = [Explanation("tolerances and noise alone", "", alone, none)]
+    for row in diagnosis.ranking:
+        detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
+        if row.p_value < diagnosis.rules.rejected_fit and not none:
+            detail = "does not fit"
+        rows.append(Explanation(short(row.effects), detail, row.probability, row.effects in chosen))
+    return sorted(rows, key=lambda row: (not row.answer, -row.probability))
+
+
+def rivals(diagnosis: Diagnosis) -> list[tuple[str, float, bool]]:
+    """Return (name, gap on held-out modes [%], whether it is the best explanation) from worst to best known."""
+    shrink, ranking = diagnosis.shrink, diagnosis.ranking
+    rows = [("the unchanged model", shrink.held_before, False)]
+    rows.append(("tolerances alone", shrink.held_nuisance, False))
+    if shrink.held_runner_up is not None:
+        name = short(ranking[1].effects) if len(ranking) > 1 else "the runner-up"
+        rows.append((f"runner-up: {name}", shrink.held_runner_up, False))
+    if ranking:
+        rows.append((short(ranking[0].effects), shrink.held_after, diagnosis.verdict != "none"))
+    return rows
 
 
 def causes_chart(diagnosis: Diagnosis) -> Chart:
