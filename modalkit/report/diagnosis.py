@@ -25,7 +25,7 @@ from modalkit.report.sections import (
 from modalkit.report.tested import sections_of_all
 from modalkit.views.charts.causes import causes_chart, closing_chart
 from modalkit.views.charts.frfs import overlaid_chart
-from modalkit.views.charts.gap import gap_chart
+from modalkit.views.charts.gap import after_words, gap_chart
 from modalkit.views.charts.place import place_chart
 from modalkit.views.mode_errors import mode_errors
 from modalkit.views.shapes import Changed
@@ -131,13 +131,12 @@ def _by_session(
     alone = len(sessions) == 1
     gaps: list[Part] = []
     frfs: list[Part] = []
-    after = "with the best-fitting (rejected) explanation" if diagnosis.verdict == "unknown" else "after"
     for i, (session, best) in enumerate(zip(sessions, bests, strict=True), start=1):
         mark = "" if i == 1 else f"-{i}"
         if not alone:
             gaps.append(element("h3", session.case.title))
         errors = mode_errors(diagnosis, session.case, best=best)
-        gaps.append(gap_chart(errors, f"gap{mark}", after=after))
+        gaps.append(gap_chart(errors, f"gap{mark}", after=after_words(diagnosis)))
         if session.identified is not None:
             both = overlaid(session.identified.frfs, best)
             frfs.append(overlaid_chart(both, f"frfs{mark}", tests=len(sessions)))

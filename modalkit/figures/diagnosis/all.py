@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from modalkit.figures.diagnosis import diagnosis_figure, gap_figure, overlaid_figure, shrink_figure
+from modalkit.figures.charts import frf_figure, gap_figure, overlaid_figure, shrink_figure
+from modalkit.figures.diagnosis.figure import diagnosis_figure
 from modalkit.figures.diagnosis.localisation import localisation_figure
-from modalkit.figures.test.frf import frf_figure
+from modalkit.views.charts.gap import after_words
 from modalkit.views.mode_errors import mode_errors
 from modalkit.workflow.case import Session
 from modalkit.workflow.fitted import Fitted, fitted
@@ -85,7 +86,7 @@ def _own(diagnosis: Diagnosis, session: Session, best: Fitted, several: bool) ->
     bands = "" if errors.floor is None else ", with the bands that noise, and noise with the tolerances, fill"
     found = {
         "gap": Drawing(
-            gap_figure(diagnosis, errors, title=title if several else ""),
+            gap_figure(errors, after=after_words(diagnosis), title=title if several else ""),
             f"{name}{shown}{bands}.",
         )
     }

@@ -117,7 +117,7 @@ def closing_chart(diagnosis: Diagnosis) -> Chart:
     low = min([*held, floor, max(shrink.after, LEAST) / whole]) / 2
     series = [
         Series(
-            "noise of the test", "bands", [], list(range(len(rows))), "band",
+            f"noise of the test, {shrink.size(shrink.floor)}", "bands", [], list(range(len(rows))), "band",
             {"low": [low] * len(rows), "high": [floor] * len(rows)},
         ),
         Series("on modes held out", "points", held, known, "blue", {"text": text, "size": 6}),
@@ -136,11 +136,22 @@ def closing_chart(diagnosis: Diagnosis) -> Chart:
     return Chart(
         "closing",
         _closes(diagnosis),
-        "Each mode predicted from all others (dots), and on the data that were fitted (ring). The band is noise.",
+        "Each mode predicted from all others (dots), and on the data that were fitted (ring). The band is noise."
+        + _by_tolerances(diagnosis),
         Axis(f"{METRICS[shrink.metric]} gap, r.m.s. [{unit}]", log=True),
         Axis(names=tuple(name for name, _, _ in rows)),
         series,
-        more={"row": 34},
+        more={"row": 34, "notes": [shrink.size(size) for _, size, _ in rows]},
+    )
+
+
+def _by_tolerances(diagnosis: Diagnosis) -> str:
+    shrink = diagnosis.shrink
+    if diagnosis.verdict == "none" or not shrink.held_nuisance <= 1.25 * shrink.held_after:
+        return ""
+    return (
+        " The tolerances alone would close the gap in this kind of data as far: the cause is identified by the other "
+        "data."
     )
 
 

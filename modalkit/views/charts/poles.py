@@ -8,8 +8,7 @@ from acquisition.display import counted
 from identification import ModalModel
 from identification.pole_reasons import Origins
 from modalkit.views.chart import Axis, Chart, Series
-from modalkit.views.charts.test import size
-from modalkit.views.charts.thin import common_lines
+from modalkit.views.charts.thin import extremes
 
 KINDS = {
     "new": ("new at its order", "cross", "faint", 2.6),
@@ -21,6 +20,9 @@ KINDS = {
     "mode": ("a mode", "dot", "blue", 2.6),
 }
 """What became of a pole: in words, and how it is drawn."""
+
+BEHIND = 600
+"""Lines of the curve behind the poles; doubled, it looks alike [-]."""
 
 ORIGINS = {
     "chain": ("mode from the chart", "down", "blue"),
@@ -38,9 +40,19 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
     near = (chart.frequency >= low - edge) & (chart.frequency <= high + edge)
     order = chart.orders[chart.level]
     kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
-    keep, _ = common_lines(model.frfs, 60)
-    total = size(np.abs(model.frfs.values).sum(axis=0), keep)
-    series = [Series("sum of the FRFs", "line", model.frfs.frequency[keep], total, "faint", {"right": True})]
+    total = np.abs(model.frfs.values).sum(axis=0)
+    keep = extremes(total, BEHIND)
+    total = total[keep]
+    series = [
+        Series(
+            f"Σ|H| [{model.frfs.unit}]",
+            "line",
+            model.frfs.frequency[keep],
+            np.where(total > 0, total, np.nan),
+            "faint",
+            {"right": True},
+        )
+    ]
     for which, (meaning, symbol, colour, radius) in KINDS.items():
         rows = np.flatnonzero(near & (kind == which))
         text = [
@@ -67,7 +79,7 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
         Axis("model order", range=(0.0, 1.04 * top)),
         series,
         360.0,
-        more={"lines": [float(f) for f in model.modal.frequency]},
+        more={"modes": [float(f) for f in model.modal.frequency]},
     )
 
 

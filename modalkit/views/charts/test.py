@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import pandas as pd
 
 from acquisition import FrfSet, HitVerdict, InputError, ModalData
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import hertz, percent
 from identification import ModalModel, auto_mac, cmif
 from modalkit.views.chart import Axis, Chart, Choices, Series
+from modalkit.views.charts.frf import Curve, frf_names, magnitude
+from modalkit.views.charts.frfs import ends
 from modalkit.views.charts.matrix import alike, matrix_chart
 from modalkit.views.charts.thin import common_lines
-from modalkit.views.hits import frf_names
 
 
 def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
@@ -53,18 +55,15 @@ def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart
     left = np.sum(np.abs(frfs.values - fitted) ** 2, axis=1) / np.maximum(
         np.sum(np.abs(frfs.values) ** 2, axis=1), 1e-300
     )
-    worst = np.argsort(-left, kind="stable")[:count].tolist()
-    items = [
-        (
-            f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left",
-            [
-                Series("what the fit leaves", "line", None, size(frfs.values[i] - fitted[i], keep), "faint"),
-                Series("measured", "line", None, size(frfs.values[i], keep), "ink"),
-                Series("fit", "line", None, size(fitted[i], keep), "blue", {"dash": True}),
-            ],
-        )
-        for i in worst
-    ]
+    items = []
+    for i in np.argsort(-left, kind="stable")[:count].tolist():
+        curves = [
+            Curve("measured", "measured", frfs.frequency, frfs.values[i]),
+            Curve("remainder", "what the fit leaves", frfs.frequency, frfs.values[i] - fitted[i]),
+            Curve("fit", "fit", frfs.frequency, fitted[i]),
+        ]
+        name_of = f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left"
+        items.append((name_of, [magnitude(curve, keep) for curve in curves]))
     misfit = np.sqrt(np.sum(np.abs(frfs.values - fitted) ** 2) / np.sum(np.abs(frfs.values) ** 2))
     rest = f" {len(names) - count} better ones are not in this file." if count < len(names) else ""
     return Chart(
@@ -74,37 +73,39 @@ def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart
         Axis("frequency [Hz]", range=ends(frfs)),
         Axis(f"|H| [{frfs.unit}]", log=True),
         choices=Choices("FRF", items, frfs.frequency[keep]),
-        more={"lines": [float(f) for f in model.modal.frequency]},
+        more={"modes": [float(f) for f in model.modal.frequency]},
     )
 
 
-def size(values: ComplexArray, keep: IntArray) -> FloatArray:
-    """Return the magnitude on some lines, nan where it is 0."""
-    found = np.abs(values[keep])
-    return np.asarray(np.where(found > 0, found, np.nan))
-
-
-def ends(frfs: FrfSet) -> tuple[float, float]:
-    """Return the ends of the axis [Hz]."""
-    return float(frfs.frequency[0]), float(frfs.frequency[-1])
-
-
-def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
-    """Return the complex mode indicator functions; None where no response was measured with every reference."""
+def thin_cmif(frfs: FrfSet) -> pd.DataFrame | None:
+    """Return the mode indicator functions on common lines; None where no response was measured with every reference."""
     try:
         table = cmif(frfs)
     except InputError:
         return None
+    return table.iloc[common_lines(frfs, 40)[0]]
+
+
+def cmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "cmif") -> Chart:
+    """Return the complex mode indicator functions of FRFs.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    table : pandas.DataFrame
+        As of :func:`identification.cmif`.
+    name : str
+        Of the chart.
+    """
     table = table[table.index > 0]
-    keep, _ = common_lines(frfs, 40)
-    keep = keep[keep < len(table)]
     shades = ("ink", "orange", "blue", "muted")
     series = [
         Series(
             f"CMIF {k}",
             "line",
-            table.index[keep].to_numpy(float),
-            _positive(table[k].to_numpy(float)[keep]),
+            table.index.to_numpy(float),
+            _positive(table[k].to_numpy(float)),
             colour,
         )
         for k, colour in zip(table.columns, shades, strict=False)
@@ -120,7 +121,7 @@ def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
         name,
         f"{counted(count, 'mode indicator function')} of {counted(len(frfs.responses), 'FRF')}",
         what + (f" Left out, as FRFs lack: {', '.join(left)}." if left else ""),
-        Axis("frequency [Hz]", range=ends(frfs)),
+        Axis("frequency [Hz]", range=(float(table.index[0]), float(table.index[-1]))),
         Axis(f"CMIF [({frfs.unit})²]", log=True),
         series,
         240.0,
