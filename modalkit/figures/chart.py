@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -103,24 +102,20 @@ def sheet_figure(sheet: Sheet, *, columns: int = 2, tall: float = 0.0) -> Figure
     width = (WIDTH - 2 * MARGIN) / columns - lefts - rights - 0.2 * (columns > 1)
     heights = [tall or chart_height(chart, width) for chart in sheet.charts]
     over = 0.25 + max(above(chart, width) for chart in sheet.charts)
-    block = over + max(heights) + max(under(chart) for chart in sheet.charts) + 0.1
+    blocks = [over + h + under(chart) + 0.1 for chart, h in zip(sheet.charts, heights, strict=True)]
+    rows = [max(blocks[k : k + columns]) for k in range(0, len(blocks), columns)]
     top = caption_height(sheet.title, sheet.text) + 0.1
-    figure = new_figure(top + math.ceil(len(sheet.charts) / columns) * block)
+    figure = new_figure(top + sum(rows))
     caption(figure, sheet.title, sheet.text)
     step = (WIDTH - 2 * MARGIN + 0.2 * (columns > 1)) / columns
     for i, (chart, height) in enumerate(zip(sheet.charts, heights, strict=True)):
-        left, down = MARGIN + (i % columns) * step, top + (i // columns) * block
-        room = 72 * (width + lefts)
+        left, down = MARGIN + (i % columns) * step, top + sum(rows[: i // columns])
+        room = 72 * (step - 0.2 * (columns > 1))
         heading(figure, left, down + 0.18, shortened(chart.title, room, HEAD, weight="bold"))
         draw_chart(
-            figure,
-            chart,
-            left=left + lefts,
-            top=down + over,
-            width=_body(chart, width),
-            height=height,
+            figure, chart, left=left + lefts, top=down + over, width=_body(chart, width), height=height,
             name=chart.title,
-        )
+        )  # fmt: skip
     return figure
 
 
@@ -263,7 +258,7 @@ def chart_height(chart: Chart, width: float) -> float:
     if "equal" in chart.more:
         return float(chart.more["equal"]) * width
     if "cell" in chart.more:
-        return _side(chart) * len(chart.y.names)
+        return _body(chart, width) / len(chart.x.names) * len(chart.y.names)
     if chart.y.names:
         return max(0.8, float(chart.more.get("row", 26)) / 86 * len(chart.y.names))
     return TALL * chart.height / 300 + len(chart.below) * (BELOW + GAP) - 1.2 * bool(chart.below)
