@@ -8,7 +8,7 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.display import Displayed
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class LevelDependence(Displayed):
     """How frequencies and damping follow the force of the hits.
 

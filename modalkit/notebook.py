@@ -11,7 +11,7 @@ from typing import Any
 
 from acquisition import InputError, ModalData
 from identification import ModalModel
-from modalkit.figures.words import answer
+from modalkit.output.words import answer
 from modalkit.report.diagnosis import answer_sections
 from modalkit.report.document import Document, Section
 from modalkit.report.html import Raw, element, joined

@@ -82,7 +82,17 @@ def _those(hits: Hits, wanted: list[bool]) -> Hits:
 
 
 def _unjudged(hits: Hits, number: int, why: Fault) -> HitVerdict:
-    return HitVerdict(hits.reference, number, False, (str(why),), 0.0, 0.0, 0.0, 0.0, kind=why.kind)
+    return HitVerdict(
+        point=hits.reference,
+        hit=number,
+        used=False,
+        reasons=(str(why),),
+        peak=0.0,
+        width=0.0,
+        band10=0.0,
+        band20=0.0,
+        kind=why.kind,
+    )
 
 
 def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:

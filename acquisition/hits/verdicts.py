@@ -15,7 +15,7 @@ from acquisition.hits.hammer import HammerTest
 from acquisition.quantities import hertz
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class HitVerdict:
     """What is thought of a hit.
 

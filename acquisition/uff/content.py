@@ -62,7 +62,7 @@ class DatasetInfo:
         return f"{self.place}: {self.message}"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class UffContent(Displayed):
     """Everything that one test's universal files hold, in SI units.
 

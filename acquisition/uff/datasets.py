@@ -213,7 +213,16 @@ def _read_nodes(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
     labels, coordinates = read_nodes(here.block.number, here.body)
     nodes, given, moving = labels.T
     finds.nodes.append(
-        NodeSet(here.block.number, here.place, nodes, coordinates, given, moving, finds.systems, here.units)
+        NodeSet(
+            number=here.block.number,
+            place=here.place,
+            nodes=nodes,
+            coordinates=coordinates,
+            given=given,
+            moving=moving,
+            systems=finds.systems,
+            units=here.units,
+        )
     )
     return replace(info, description=f"{len(nodes)} nodes")
 

@@ -169,7 +169,16 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
         [*reported, *finds.warnings, *copies, *nodes.notes, *notes, *lost, *odd, *doubts]
     )
     unused = (*lost, *odd)
-    return UffContent(tests, frfs, modal, nodes.geometry, infos, tuple(warnings), finds.title, unused)
+    return UffContent(
+        tests=tests,
+        frfs=frfs,
+        modal=modal,
+        geometry=nodes.geometry,
+        datasets=infos,
+        warnings=tuple(warnings),
+        title=finds.title,
+        unused=unused,
+    )
 
 
 def _stated(info: DatasetInfo, hit: str | None) -> str:

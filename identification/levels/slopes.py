@@ -95,10 +95,22 @@ def level_dependence(
     shifts, variances = (np.array(part) for part in zip(*found, strict=True))
     point = np.repeat(np.arange(len(entries)), [len(e.levels) for e in entries])
     lines = [_slopes(levels, common, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
+    (by_level, by_level_sigma), (damping_by_level, damping_by_level_sigma) = lines
     recorded = LevelDependence(
-        *lines[0], *lines[1], common, float(levels.min()), float(levels.max()), levels, point,
-        shifts[:, :, 0], np.sqrt(variances[:, :, 0]), shifts[:, :, 1], np.sqrt(variances[:, :, 1]),
-    )  # fmt: skip
+        slope=by_level,
+        slope_sigma=by_level_sigma,
+        damping_slope=damping_by_level,
+        damping_slope_sigma=damping_by_level_sigma,
+        level=common,
+        weakest=float(levels.min()),
+        strongest=float(levels.max()),
+        levels=levels,
+        point=point,
+        shifts=shifts[:, :, 0],
+        sigmas=np.sqrt(variances[:, :, 0]),
+        damping_shifts=shifts[:, :, 1],
+        damping_sigmas=np.sqrt(variances[:, :, 1]),
+    )
     return _by_effective_levels(recorded)
 
 

@@ -2,6 +2,17 @@
 
 from identification.pairing.assignment import Pair, common_shift, pair
 from identification.pairing.correlation import Correlation, correlate
+from identification.pairing.followed import counterparts, unlikeness
 from identification.pairing.turned import Subspace, turned_subspaces
 
-__all__ = ["Correlation", "Pair", "Subspace", "common_shift", "correlate", "pair", "turned_subspaces"]
+__all__ = [
+    "Correlation",
+    "Pair",
+    "Subspace",
+    "common_shift",
+    "correlate",
+    "counterparts",
+    "pair",
+    "turned_subspaces",
+    "unlikeness",
+]

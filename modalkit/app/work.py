@@ -33,9 +33,9 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Diagnose a study and write the report."""
     from acquisition.quantities import bare_p, probability
     from modalkit.app.acceptance import acceptable
-    from modalkit.figures.words import answer, parameters
     from modalkit.output.documents import diagnosis_document
     from modalkit.output.summary import answers, separates
+    from modalkit.output.words import answer, parameters
     from modalkit.report.diagnosis import reported
     from modalkit.report.page import page
     from modalkit.study.read import read_study

@@ -128,7 +128,7 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
 
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:
     """Draw a diagnosis, and the tests it rests on."""
-    from modalkit.report import drawings
+    from modalkit.figures.diagnosis.all import drawings
 
     return {name: drawing.figure for name, drawing in drawings(diagnosis, sessions).items()}
 

@@ -81,7 +81,7 @@ def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
 
 
 def _figures(found: Forecast) -> dict[str, Any]:
-    from modalkit.figures.planning import planning_figure
+    from modalkit.figures.charts import planning_figure
 
     return {"planning": planning_figure(found)}
 

@@ -12,15 +12,18 @@ from matplotlib.figure import Figure
 from acquisition import FrfSet, HammerTest, InputError, ModalData, judge_hits
 from acquisition.quantities import hertz
 from identification import Correlation, ModalModel
-from modalkit.figures.diagnosis import diagnosis_figure
+from modalkit.figures.charts import (
+    auto_mac_figure,
+    cmif_figure,
+    frf_figure,
+    mac_figure,
+    stabilisation_figure,
+)
+from modalkit.figures.diagnosis.figure import diagnosis_figure
+from modalkit.figures.hits import hits_figure
 from modalkit.figures.save import save_figures
-from modalkit.figures.shapes.matrix import auto_mac_figure, mac_figure
 from modalkit.figures.shapes.shapes import shapes_figure
-from modalkit.figures.test.cmif import cmif_figure
-from modalkit.figures.test.frf import frf_figure
-from modalkit.figures.test.hits import hits_figure
-from modalkit.figures.test.stabilisation import stabilisation_figure
-from modalkit.figures.update.all import update_figures
+from modalkit.figures.update import update_figures
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.identification import Processed
 from updating import Diagnosis

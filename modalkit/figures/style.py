@@ -33,6 +33,12 @@ ORANGE = "#d9590a"
 GREEN = "#128a66"
 """A third series, where one is needed."""
 
+NAMED = {
+    "ink": INK, "muted": MUTED, "faint": FAINT, "pale": PALE, "band": BAND, "blue": BLUE, "orange": ORANGE,
+    "green": GREEN, "red": "#c0263a", "clamp": MUTED,
+}  # fmt: skip
+"""Colours by the names that charts use."""
+
 SERIES = (BLUE, ORANGE, GREEN, "#8c5fa8", "#b08900", "#5b6672")
 """Series in the order of their use."""
 
@@ -212,3 +218,40 @@ def grouped(places: Sequence[float], spacing: float) -> list[list[int]]:
 def numbers(group: Sequence[int]) -> str:
     """Name the modes of a group, counted from 1: ``3`` or ``3–5``."""
     return f"{group[0] + 1}" if len(group) == 1 else f"{group[0] + 1}–{group[-1] + 1}"
+
+
+def key(axes: Axes, indent: float, above: float = 0.0) -> None:
+    """Put the key over a panel, where there are names, in as many lines as it needs.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel.
+    indent : float
+        How far left of the panel it begins [in].
+    above : float
+        How far over the panel it ends [in].
+    """
+    handles, labels = axes.get_legend_handles_labels()
+    if not handles:
+        return
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    box, (across, down) = axes.get_position(), figure.get_size_inches()
+    wide, tall = box.width * across, box.height * down
+    names = list(dict.fromkeys(labels))
+    legend = axes.legend(
+        [handles[labels.index(name)] for name in names], names, loc="lower left", frameon=False, fontsize=SMALL,
+        ncols=-(-len(names) // key_lines(names, wide + indent)), handletextpad=0.4, columnspacing=1.2, handlelength=1.4,
+        bbox_to_anchor=(-(indent + 0.06) / wide, 1 + (above + 0.02) / tall), borderpad=0.1, borderaxespad=0.0,
+        scatteryoffsets=[0.45],
+    )  # fmt: skip
+    for text in legend.get_texts():
+        text.set_color(INK)
+
+
+def key_lines(names: Sequence[str], room: float) -> int:
+    """Return how many lines a key of these names needs in some width [in]."""
+    gap = 0.17  # between two names; their signs take a quarter of an inch
+    wide = [text_width(name, SMALL) / 72 + 0.25 + gap for name in names]
+    return 1 if sum(wide) <= room + gap else -(-len(names) // max(1, int((room + gap) / max(wide))))

@@ -1,4 +1,7 @@
-"""What might be changed about a test: where to hit, how well to calibrate, what to test before, how wide, how often."""
+"""What might be changed about a test: where to hit, how well to calibrate, what to test before, how wide, how often.
+
+What an instrument reaches is that of the readings which a diagnosis proposes.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modalkit.planning.design import Design
-
-CALIBRATED = 0.005
-"""What a calibration with a known free mass reaches, relative [-]."""
-
-MICROMETER = 0.002
-"""What a micrometer reaches on thickness and width, relative [-]."""
-
-MASS_KNOWN = 0.001
-"""What weighing, with the dimensions known, reaches on the density, relative [-]."""
+from updating.diagnosis.next_test.instruments import Caliper, Chain, Weigh
 
 HITS = 4
 """So many times more hits."""
@@ -55,9 +50,9 @@ def calibrated(design: Design) -> Change:
     """Calibrate the chain."""
     return Change(
         "calibration",
-        f"calibrate the chain with a known free mass: level to {100 * CALIBRATED:g} % "
+        f"calibrate the chain with a known free mass: level to {100 * Chain.sigma:g} % "
         f"instead of {100 * design.calibration:g} %",
-        replace(design, calibration=CALIBRATED),
+        replace(design, calibration=Chain.sigma),
     )
 
 
@@ -72,7 +67,7 @@ def baseline(design: Design) -> Change:
 
 def sizes(design: Design, names: Sequence[str]) -> Iterator[Change]:
     """Weigh, and gauge what has a thickness; ``names`` are the properties with a tolerance."""
-    reached = {"thickness": MICROMETER, "width": MICROMETER, "density": MASS_KNOWN}
+    reached = {"thickness": Caliper.sigma, "width": Caliper.sigma, "density": Weigh.sigma}
     now = dict(zip(names, design.tolerances, strict=True))
     better = {name: min(reached.get(name, sigma), sigma) for name, sigma in now.items()}
     if better == now:

@@ -1,7 +1,6 @@
 """Reports: one HTML file of an identification, an update, a diagnosis or a plan, which needs nothing else."""
 
 from modalkit.report.diagnosis import diagnosis_report
-from modalkit.report.drawings import Drawing, drawings
 from modalkit.report.identification import identification_report
 from modalkit.report.place import REPORT, write_report
 from modalkit.report.planning import plan_report
@@ -11,9 +10,7 @@ from modalkit.report.updating import update_report
 __all__ = [
     "REPORT",
     "Basis",
-    "Drawing",
     "diagnosis_report",
-    "drawings",
     "identification_report",
     "plan_report",
     "update_report",

@@ -5,13 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import datetime
 
-from modalkit.figures.diagnosis import Fitted, fitted, mode_errors, overlaid
-from modalkit.figures.diagnosis.localisation import localisation_title
-from modalkit.figures.words import answer
-from modalkit.report.charts.causes import causes_chart, closing_chart
-from modalkit.report.charts.frfs import overlaid_chart
-from modalkit.report.charts.gap import gap_chart
-from modalkit.report.charts.place import place_chart
+from modalkit.output.location import localisation_title
+from modalkit.output.words import answer
 from modalkit.report.document import Document, Part, Section, Standing
 from modalkit.report.html import element, joined
 from modalkit.report.page import page
@@ -28,10 +23,17 @@ from modalkit.report.sections import (
     the_warnings,
 )
 from modalkit.report.tested import sections_of_all
+from modalkit.views.charts.causes import causes_chart, closing_chart
+from modalkit.views.charts.frfs import overlaid_chart
+from modalkit.views.charts.gap import after_words, gap_chart
+from modalkit.views.charts.place import place_chart
+from modalkit.views.mode_errors import mode_errors
 from modalkit.views.shapes import Changed
 from modalkit.views.structure import structure_page
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
+from modalkit.workflow.fitted import Fitted, fitted
+from modalkit.workflow.overlaid import overlaid
 from updating import Case, Diagnosis
 
 
@@ -129,13 +131,12 @@ def _by_session(
     alone = len(sessions) == 1
     gaps: list[Part] = []
     frfs: list[Part] = []
-    after = "with the best-fitting (rejected) explanation" if diagnosis.verdict == "unknown" else "after"
     for i, (session, best) in enumerate(zip(sessions, bests, strict=True), start=1):
         mark = "" if i == 1 else f"-{i}"
         if not alone:
             gaps.append(element("h3", session.case.title))
         errors = mode_errors(diagnosis, session.case, best=best)
-        gaps.append(gap_chart(errors, f"gap{mark}", after=after))
+        gaps.append(gap_chart(errors, f"gap{mark}", after=after_words(diagnosis)))
         if session.identified is not None:
             both = overlaid(session.identified.frfs, best)
             frfs.append(overlaid_chart(both, f"frfs{mark}", tests=len(sessions)))

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from datetime import datetime
-
-import numpy as np
 
 from modalkit.output.schemas.plan import PlanDocument
 from modalkit.planning import Forecast
 from modalkit.planning.document import to_json
 from modalkit.planning.note import brings, note, offered
-from modalkit.planning.separability import NONE, SEEN, SURE
+from modalkit.planning.separability import SEEN, SURE
 from modalkit.planning.trials import Check
-from modalkit.report.charts.matrix import matrix_chart
 from modalkit.report.document import Document, Section
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from modalkit.report.page import page
 from modalkit.report.provenance import Basis, provenance
 from modalkit.study.read import Study
-from modalkit.views.chart import Axis, Chart, Series
+from modalkit.views.charts.planning import separations_chart, thresholds_chart
 
 
 def plan_report(
@@ -69,57 +65,6 @@ def _answer(found: Forecast) -> Raw:
         f"{100 * separately / max(len(pairs), 1):.0f} % of the pairs of effects that are seen are separated"
     )
     return joined(element("p", share, class_="answer"), definitions(stated, class_="letter"))
-
-
-def separations_chart(found: Forecast) -> Chart:
-    """Return how many standard deviations each effect is from each other, full colour where it is surely separated."""
-    now = found.now
-    names, columns = list(now.names), ["no effect", *now.names]
-    sigma = now.matrix[[NONE, *names]].to_numpy(float)
-    written = ["" if math.isnan(v) else f"{v:.1f}" if v < 10 else "10+" for v in sigma.ravel()]
-    pairs = now.shown_pairs
-    count = f"{sum(v >= SEEN for v in pairs.values())} of {len(pairs)} pairs"
-    title = f"{count} are {SEEN:g}σ apart or more"
-    if pairs:
-        least = min(pairs, key=lambda pair: pairs[pair])
-        title += f"; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
-    text = (
-        "Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can "
-        f"do of it; full colour from {SURE:g}σ on."
-    )
-    return matrix_chart(
-        "separations", title, text, np.minimum(sigma / SURE, 1.0), names, columns,
-        axes=("effect", "against"), written=written, quantity="σ",
-    )  # fmt: skip
-
-
-def thresholds_chart(found: Forecast) -> Chart:
-    """Return from what share of the severity asked about each effect is separated."""
-    limits = found.now.limits
-    names = sorted(limits, key=lambda n: limits[n].separated / limits[n].clear)
-    shares = {n: (limits[n].seen / limits[n].clear, limits[n].separated / limits[n].clear) for n in names}
-    rows = {n: i for i, n in enumerate(names)}
-    series = []
-    for k, (meaning, colour, hollow) in enumerate(
-        (("seen from", "ink", True), ("separated from all others", "blue", False))
-    ):
-        known = [n for n in names if math.isfinite(shares[n][k]) and shares[n][k] > 0]
-        text = [f"{n}\n{meaning} {100 * shares[n][k]:.3g} % of what is asked about" for n in known]
-        more = {"text": text, "hollow": hollow, "size": 4.5}
-        at = [100 * shares[n][k] for n in known]
-        series.append(Series(meaning, "points", at, [rows[n] for n in known], colour, more))
-    never = sum(not math.isfinite(shares[n][1]) for n in names)
-    early = sum(shares[n][1] <= 1 for n in names)
-    return Chart(
-        "thresholds",
-        f"{early} of {len(names)} effects are separated from all others as strong as asked about, "
-        f"{never or 'none'} never",
-        "Ring: seen; dot: separated from all others; dotted: as strong as asked about.",
-        Axis("severity, of what is asked about [%]", log=True),
-        Axis(names=tuple(names)),
-        series,
-        more={"lines": [100.0], "row": 22},
-    )
 
 
 def thresholds_table(document: PlanDocument) -> Raw:

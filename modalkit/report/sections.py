@@ -8,9 +8,9 @@ import pandas as pd
 
 from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
-from modalkit.figures.words import METRICS
 from modalkit.output.forms import numbers_a_form
 from modalkit.output.summary import answers, of_no_library_text, searched_text, separates
+from modalkit.output.words import METRICS
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked

@@ -9,11 +9,12 @@ from acquisition.display import counted
 from acquisition.errors import InputError, ModalkitError
 from acquisition.quantities import hertz
 from identification import ModalModel, pole_origins
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, poles_chart
 from modalkit.report.document import Moving, Section
 from modalkit.report.html import Cell, Column, Raw, folded, table
 from modalkit.views.chart import Chart
+from modalkit.views.charts.matrix import matrix_chart
+from modalkit.views.charts.poles import poles_chart
+from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, thin_cmif
 from modalkit.views.shapes import Beside, Changed, shapes_page
 from modalkit.workflow.case import Session, modes_in_band
 from modalkit.workflow.identification import Processed
@@ -101,7 +102,9 @@ def sections_of_test(
             frfs_chart(identified, f"frf{mark}", tests=tests),
             poles_chart(identified, origins, f"poles{mark}"),
         ]
-        sections.append(Section(f"FRFs and poles{whose}", [*fit, cmif_chart(identified.frfs, f"cmif{mark}")]))
+        if (table := thin_cmif(identified.frfs)) is not None:
+            fit.append(cmif_chart(identified.frfs, table, f"cmif{mark}"))
+        sections.append(Section(f"FRFs and poles{whose}", fit))
     if modal is not None:
         sections.append(
             Section(f"How alike the modes are{whose}", [auto_mac_chart(modal, f"auto-mac{mark}")])

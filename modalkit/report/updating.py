@@ -10,10 +10,6 @@ import pandas as pd
 
 from acquisition.display import counted
 from acquisition.quantities import percent, raised
-from modalkit.figures.diagnosis.errors import ModeErrors
-from modalkit.report.charts.gap import gap_chart
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.update import course_charts, factors_chart, frac_chart
 from modalkit.report.document import Document, Part, Section
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from modalkit.report.page import page
@@ -21,6 +17,10 @@ from modalkit.report.provenance import Basis, provenance
 from modalkit.report.sections import the_warnings
 from modalkit.report.tested import sections_of_all
 from modalkit.views.chart import Chart
+from modalkit.views.charts.gap import gap_chart
+from modalkit.views.charts.matrix import matrix_chart
+from modalkit.views.charts.update import course_sheet, factors_chart, factors_of, frac_of
+from modalkit.views.mode_errors import ModeErrors
 from modalkit.views.shapes import Changed
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
@@ -73,13 +73,15 @@ def updated_models(result: Update, case: Case) -> list[Changed]:
 
 def update_sections(result: Update) -> list[Section]:
     """Return errors, parameters, what is not determined, how all moved, and the statement of the fit."""
-    frac = frac_chart(result) if isinstance(result, FrfUpdate) else None
+    frac = frac_of(result) if isinstance(result, FrfUpdate) else None
     return [
         Section("How far it closes", [*_errors(result), pairs_table(result)]),
-        Section("Parameters", [factors_chart(result), parameters_table(result), _correlations(result)]),
+        Section(
+            "Parameters", [factors_chart(factors_of(result)), parameters_table(result), _correlations(result)]
+        ),
         Section("What the data do not determine", [_undetermined(result)]),
         Section("FRAC", [frac]),
-        Section("How the parameters moved", list(course_charts(result))),
+        Section("How the parameters moved", course_sheet(result).charts),
         Section("The whole statement", [element("pre", result.report())]),
     ]
 

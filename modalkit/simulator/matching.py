@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.optimize
 
 from acquisition.arrays import FloatArray, IntArray
+from identification.mac import mac
+from identification.pairing import counterparts, unlikeness
 from modalkit.simulator.bodies.complex_modes import ComplexModes
-
-_FAR = 0.5
 
 
 def match(wanted: ComplexModes, among: ComplexModes) -> IntArray:
@@ -22,15 +21,10 @@ def match(wanted: ComplexModes, among: ComplexModes) -> IntArray:
     Returns
     -------
     (n_wanted,) array
-        Indices into ``among``: the assignment that is best in MAC less the distance in ln f, a factor of
-        e^2 in frequency counting as much as a MAC of zero [-].
+        Indices into ``among``, by shape and frequency.
     """
-    a, b = wanted.points, among.points
-    products = np.abs(a.conj().T @ b) ** 2
-    mac = products / np.outer(np.sum(np.abs(a) ** 2, axis=0), np.sum(np.abs(b) ** 2, axis=0))
-    away = np.abs(np.log(wanted.frequency)[:, None] - np.log(among.frequency)[None])
-    _, chosen = scipy.optimize.linear_sum_assignment(_FAR * away - mac)
-    return np.asarray(chosen)
+    away = np.log(wanted.frequency)[:, None] - np.log(among.frequency)[None]
+    return counterparts(unlikeness(mac(wanted.points, among.points), away))
 
 
 def log_ratios(wanted: ComplexModes, among: ComplexModes) -> FloatArray:

@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 
 from acquisition.errors import InputError, StudyError
-from acquisition.si_units import si_value
-from modalkit.study.stated_effects import SOME, nodes, sensor
+from modalkit.study.stated_effects import SOME, stated_value
 from updating import LIBRARY, Predictor
 from updating.effects import Effect, check_values, hypotheses_of, labels_of, names_of, optional_values
-from updating.effects.specimens import unit_of
 from updating.models.spec import Kind, Spec
 from updating.models.state import State
 
@@ -55,54 +53,37 @@ def parse_effect(
         near = get_close_matches(name, effects, n=3)
         meant = f"did you mean {' or '.join(near)}?" if near else "`modalkit effects` lists them"
         raise InputError(f"--effect {text}: there is no effect {name!r}; {meant}")
-    values: dict[str, Any] = {}
+    effect, values = effects[name], dict[str, Any]()
     for entry in filter(None, (part.strip() for part in rest.split(","))):
-        parameter, equals, stated = (part.strip() for part in entry.partition("="))
+        parameter, _, stated = (part.strip() for part in entry.partition("="))
         if parameter in values:
             raise InputError(f"--effect {text}: {parameter} is given twice")
-        if parameter in effects[name].labels:
-            values[parameter] = _points(text, parameter, stated)
-            continue
-        if parameter == "channel" and effects[name].of_sensor:
-            values[parameter] = _sensor(text, stated)
-            continue
-        if parameter in effects[name].named and stated:
-            values[parameter] = stated
-            continue
         try:
-            values[parameter] = _value(stated, effects[name], parameter, kind)
-        except ValueError as error:
-            if equals and stated[:1].isdigit():
-                raise InputError(f"--effect {text}: {parameter}: {error}") from error
-            equals = ""
-        if not equals or not np.isfinite(values[parameter]):
-            raise InputError(f"--effect {text}: {entry!r} is no PARAM=VALUE; write {name}:PARAM=VALUE,...")
+            typed = _typed(effect, parameter, stated)
+            if typed is None:
+                raise StudyError(f"{entry!r} is no PARAM=VALUE; write {name}:PARAM=VALUE,...")
+            values[parameter] = stated_value(effect, parameter, typed, kind)
+        except StudyError as error:
+            raise InputError(f"--effect {text}: {error}") from error
     return name, values
 
 
-def _value(stated: str, effect: Effect, parameter: str, kind: Kind) -> float:
-    """Return a number in SI units."""
+def _typed(effect: Effect, parameter: str, stated: str) -> Any:
+    """Return what a study file would have for a value typed: nodes written 3/4, a number, a text; None for no value."""
+    if parameter in effect.labels:
+        try:
+            found = [int(part) for part in stated.split("/")]
+        except ValueError as error:
+            wanted = f"{parameter}=3/4" if parameter == SOME else f"{parameter}=3"
+            raise StudyError(f"{stated!r} are not node numbers; write {wanted}") from error
+        return found if parameter == SOME or len(found) > 1 else found[0]
+    if parameter in effect.named or (parameter == "channel" and effect.of_sensor):
+        return stated or None
     try:
-        return float(stated)
+        number = float(stated)
     except ValueError:
-        return float(si_value(stated, unit_of(effect, parameter, kind)))
-
-
-def _points(text: str, label: str, stated: str) -> Any:
-    """Return the node numbers written 3 or 3/4."""
-    try:
-        found = [int(part) for part in stated.split("/")]
-        return nodes(label, found if label == SOME or len(found) > 1 else found[0])
-    except (ValueError, StudyError) as error:
-        wanted = f"{label}=3/4" if label == SOME else f"{label}=3"
-        raise InputError(f"--effect {text}: {stated!r} are not node numbers; write {wanted}") from error
-
-
-def _sensor(text: str, stated: str) -> str:
-    try:
-        return sensor(stated)
-    except StudyError as error:
-        raise InputError(f"--effect {text}: {error}") from error
+        return stated if stated[:1].isdigit() else None
+    return number if np.isfinite(number) else None
 
 
 def check_effect(

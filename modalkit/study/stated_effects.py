@@ -11,6 +11,7 @@ from acquisition.errors import StudyError
 from acquisition.si_units import si_value
 from modalkit.study.errors import nearest
 from updating import LIBRARY
+from updating.effects import Effect
 from updating.effects.specimens import unit_of
 from updating.models.spec import Kind
 
@@ -67,7 +68,7 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
         meant = nearest(str(name), tuple(LIBRARY))
         raise StudyError(f"[[model.effect]] unknown effect {name!r}{meant}; `modalkit effects` lists them")
     try:
-        return name, {k: _value(name, k, v, kind) for k, v in values.items()}
+        return name, {k: stated_value(LIBRARY[name], k, v, kind) for k, v in values.items()}
     except StudyError as error:
         raise StudyError(f"[[model.effect]] {name}: {error}") from error
 
@@ -87,25 +88,25 @@ def check_repeated(names: Sequence[str]) -> None:
         )
 
 
-def _value(effect: str, name: str, value: Any, kind: Kind) -> Any:
-    """Return the value of a label or a parameter of an effect."""
-    if name in LIBRARY[effect].labels:
-        return nodes(name, value)
-    if name in LIBRARY[effect].named and isinstance(value, str):
-        return value
-    if name == "channel" and LIBRARY[effect].of_sensor:
-        return sensor(value)
-    return _number(name, value, unit_of(LIBRARY[effect], name, kind) if isinstance(value, str) else "")
-
-
-def sensor(value: Any) -> str:
-    """Return the fixed sensor that ``channel`` names: its node and direction, or its node.
+def stated_value(effect: Effect, name: str, value: Any, kind: Kind) -> Any:
+    """Return the value of a label or a parameter of an effect.
 
     Raises
     ------
     StudyError
-        If the value is something else.
+        If it is not what the parameter takes.
     """
+    if name in effect.labels:
+        return _nodes(name, value)
+    if name == "channel" and effect.of_sensor:
+        return _sensor(value)
+    if name in effect.named and isinstance(value, str):
+        return value
+    return _number(name, value, unit_of(effect, name, kind) if isinstance(value, str) else "")
+
+
+def _sensor(value: Any) -> str:
+    """Return the fixed sensor that ``channel`` names: its node and direction, or its node."""
     if (
         isinstance(value, bool)
         or not isinstance(value, str | int)
@@ -118,14 +119,8 @@ def sensor(value: Any) -> str:
 _SENSOR = re.compile(r"\d{1,9}([+-]R?[XYZxyz])?")
 
 
-def nodes(label: str, value: Any) -> int | tuple[int, ...]:
-    """Return the node numbers that a label names: a tuple for ``points``, one number for ``point``.
-
-    Raises
-    ------
-    StudyError
-        If the value is something else, or a node is given twice.
-    """
+def _nodes(label: str, value: Any) -> int | tuple[int, ...]:
+    """Return the node numbers that a label names: a tuple for ``points``, one number for ``point``."""
     several = label == SOME
     given = list(value) if several and isinstance(value, list | tuple) else [value]
     if not given or not all(isinstance(v, int) and not isinstance(v, bool) for v in given):

@@ -1,4 +1,4 @@
-"""A chart as data: what static/chart.js draws, reads out and hands over as CSV."""
+"""A chart as data: matplotlib draws it on paper, static/chart.js in the browser, where its numbers can be read."""
 
 from __future__ import annotations
 
@@ -35,6 +35,8 @@ class Axis:
         Names in place of numbers; values are their places then.
     zero : bool
         Whether it begins at 0 where nothing is negative.
+    ticks : tuple of float
+        Where its numbers stand; left out: evenly.
     """
 
     title: str = ""
@@ -42,11 +44,13 @@ class Axis:
     range: tuple[float, float] | None = None
     names: tuple[str, ...] = ()
     zero: bool = False
+    ticks: tuple[float, ...] = ()
 
     def data(self) -> dict[str, Any]:
         """Return what is drawn."""
         found = {"title": self.title, "log": self.log, "range": self.range, "zero": self.zero}
-        return found | ({"names": self.names} if self.names else {})
+        optional = {"names": self.names, "ticks": self.ticks}
+        return found | {name: value for name, value in optional.items() if value}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +68,9 @@ class Series:
     colour : str
         One of the page: blue, orange, green, red, muted, faint, ink, pale, band.
     more : dict
-        What else the kind has: error, low, high, bottom, top, value, written, text, colours (sequences); symbol, size,
-        hollow, dash, right (behind, on an axis of its own), unnamed.
+        What else the kind has: error, low, high, bottom, top, value, written, text, colours, modes (sequences; the
+        last are the numbers of modes that marks stand for); symbol, size, width, hollow, dash, right (behind, on an
+        axis of its own), panel (1 for the first below), unnamed.
     """
 
     name: str
@@ -137,9 +142,13 @@ class Chart:
         Of its body, where no rows give it one [px].
     choices : Choices, optional
         Further series of which one set is shown.
+    below : sequence of Axis
+        Upright axes of panels beneath, over the same places along.
     more : dict
-        ``lines``: places of dotted lines upright; ``zero``: an axis at 0; ``equal``: height over width of what is drawn
-        in true proportion; ``bare``: no axes; ``row``: height of a row, ``cell``: width of a column at the most [px].
+        ``lines``: places of dotted lines upright; ``modes``: the same for modes, which are numbered on paper;
+        ``zero``: an axis at 0; ``equal``: height over width of what is drawn in true proportion; ``bare``: no axes;
+        ``row``: height of a row, ``cell``: width of a column at the most [px]; ``notes``: a text for each row, which
+        stands beside it on paper.
     """
 
     name: str
@@ -150,6 +159,7 @@ class Chart:
     series: Sequence[Series] = ()
     height: float = 300.0
     choices: Choices | None = None
+    below: Sequence[Axis] = ()
     more: dict[str, Any] = field(default_factory=dict)
 
     def data(self) -> dict[str, Any]:
@@ -163,7 +173,26 @@ class Chart:
             "series": [one.data() for one in self.series],
             "height": self.height,
         }
+        if self.below:
+            found["below"] = [axis.data() for axis in self.below]
         return found | ({"choices": self.choices.data()} if self.choices is not None else {}) | self.more
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Charts under one title.
+
+    Parameters
+    ----------
+    title, text : str
+        What they show together, and what the marks are.
+    charts : sequence of Chart
+        Each with its own title.
+    """
+
+    title: str
+    text: str
+    charts: Sequence[Chart]
 
 
 def rounded(values: Any, digits: int = DIGITS) -> list[float | None]:

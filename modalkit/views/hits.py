@@ -12,6 +12,7 @@ from acquisition.hits.checks import pulse_spectrum, upright
 from acquisition.quantities import hertz, number
 from modalkit.output.documents import hit_document
 from modalkit.study.read import Study
+from modalkit.views.charts.frf import frf_names
 from modalkit.views.curves import POINTS, check_frf, decibels, envelope, lines
 from modalkit.workflow.identification import Judged, Processed
 
@@ -38,11 +39,6 @@ def hits_page(processed: Processed | None, study: Study) -> dict[str, Any]:
         "estimator": study.test.estimator,
         "warnings": [str(w) for w in processed.warnings],
     }
-
-
-def frf_names(frfs: FrfSet) -> list[str]:
-    """Return what each FRF is between: response / force."""
-    return [f"{a} / {b}" for a, b in zip(frfs.responses, frfs.references, strict=True)]
 
 
 def first_frf(frfs: FrfSet) -> int:

@@ -12,8 +12,9 @@ from identification import ModalModel, auto_mac, cmif, mpc
 from identification.identify import Provisional
 from identification.pole_reasons import Origins
 from modalkit.study.read import Study
+from modalkit.views.charts.frf import frf_names
 from modalkit.views.curves import check_frf, lines
-from modalkit.views.hits import first_frf, frf_names
+from modalkit.views.hits import first_frf
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.identification import Processed
 

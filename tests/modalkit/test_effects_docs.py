@@ -13,9 +13,9 @@ import pytest
 from typer.testing import CliRunner
 
 from modalkit.cli import app
-from modalkit.figures.words import answer, phrase
 from modalkit.output.library import effects_document, effects_table
 from modalkit.output.summary import summary_text
+from modalkit.output.words import answer, phrase
 from modalkit.study.named_effects import parse_effect
 from modalkit.study.stated_effects import accepted_values
 from updating import (

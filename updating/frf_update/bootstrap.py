@@ -22,7 +22,7 @@ from updating.frf_update.stage import Stage
 from updating.frf_update.step import Step, last_steps
 from updating.models.state import NOMINAL, combine
 from updating.test_data.measured_frfs import MeasuredFrfs
-from updating.update.resampling import FEWEST, LEVEL
+from updating.update.intervals import check_draws, with_intervals
 
 ROUNDS = 2
 """How often the stages are gone through for each draw, from the solution of the data at hand."""
@@ -80,10 +80,7 @@ def bootstrap_frf_update(
     StudyError
         If there are fewer than twenty draws.
     """
-    if n < FEWEST:
-        raise StudyError(
-            f"bootstrap: {n} draws are too few for an interval; ask for {FEWEST} or more, better 100"
-        )
+    check_draws(n, better=100)
     specimen, _, steps = solve_stages(case, frfs, parameters, stages, lines)
     found = report(specimen, frfs, steps)
     last = last_steps(steps)
@@ -100,12 +97,9 @@ def bootstrap_frf_update(
     )
     if len(values) < n:
         raise StudyError(f"bootstrap: {len(values)} draws were given and {n} asked for")
-    tails = (1 - LEVEL) / 2
-    low, high = np.quantile(values, [tails, 1 - tails], axis=0)
-    nominal = np.array([k.nominal for step in last for k in step.stage.model_parameters])
-    ends = zip(found.parameters, low * nominal, high * nominal, strict=True)
-    with_ends = tuple(replace(p, interval=(float(a), float(b))) for p, a, b in ends)
-    return FrfBootstrap(replace(found, parameters=with_ends, draws=n), values)
+    turned = [k for step in last for k in step.stage.model_parameters]
+    estimates = with_intervals(found.parameters, values, turned)
+    return FrfBootstrap(replace(found, parameters=estimates, draws=n), values)
 
 
 def _from_noise(frfs: MeasuredFrfs, rng: np.random.Generator, n: int) -> Iterable[MeasuredFrfs]:

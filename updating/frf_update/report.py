@@ -118,16 +118,16 @@ def _estimate(model_parameter: ModelParameter, coordinate: float, sigma: float) 
     if model_parameter.reach:
         factor = 1 + model_parameter.reach * value
     return Estimate(
-        model_parameter.name,
-        None,
-        model_parameter.nominal * value,
-        model_parameter.unit,
-        factor,
-        sigma,
-        not ends[0] < coordinate < ends[1],
-        model_parameter.nominal * model_parameter.low,
-        model_parameter.nominal * model_parameter.high,
-        model_parameter.nominal * model_parameter.start,
+        name=model_parameter.name,
+        study=None,
+        value=model_parameter.nominal * value,
+        unit=model_parameter.unit,
+        factor=factor,
+        sigma=sigma,
+        at_bound=not ends[0] < coordinate < ends[1],
+        low=model_parameter.nominal * model_parameter.low,
+        high=model_parameter.nominal * model_parameter.high,
+        initial=model_parameter.nominal * model_parameter.start,
         relative=model_parameter.is_factor,
         quantity=model_parameter.quantity,
     )

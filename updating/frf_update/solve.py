@@ -9,7 +9,7 @@ import numpy as np
 from acquisition.arrays import BoolArray, FloatArray
 from updating.frf_update.evaluation import Evaluation
 from updating.frf_update.stage import Stage, whitened
-from updating.update.bounds import bounded_step
+from updating.update.gauss_newton import bounded_step, halved, least_squares_step
 
 BEGIN = 0.5
 """Discrepancy to begin with [-]."""
@@ -158,32 +158,24 @@ def increment(stage: Stage, theta: FloatArray, rows: FloatArray, load: FloatArra
     """Return the step of Eq. 10, at most `LARGEST` doubts; what is at a bound and pushed further stays."""
 
     def of_free(free: BoolArray) -> FloatArray:
-        return np.asarray(_cut_off((rows * stage.doubt)[:, free], load) * stage.doubt[free])
+        return np.asarray(
+            least_squares_step((rows * stage.doubt)[:, free], load, DROWNED) * stage.doubt[free]
+        )
 
     step = bounded_step(of_free, theta, stage.low, stage.high)
     longest = np.abs(step / stage.doubt).max(initial=0.0)
     return np.asarray(step * min(1.0, LARGEST / max(longest, 1e-300)))
 
 
-def _cut_off(rows: FloatArray, load: FloatArray) -> FloatArray:
-    if rows.shape[1] == 0:
-        return np.zeros(0)
-    left, size, right = np.linalg.svd(rows, full_matrices=False)
-    kept = size > max(DROWNED, 1e-10 * size.max())
-    return np.asarray(right[kept].T @ ((left[:, kept].T @ load) / size[kept]))
-
-
 def _controlled(
     stage: Stage, theta: FloatArray, step: FloatArray, weights: FloatArray | float, before: float
 ) -> tuple[FloatArray, Evaluation, float] | None:
     """Shorten a step until the misfit falls; None if it does not."""
-    for halving in range(8):
-        new = np.clip(theta + step / 2**halving, stage.low, stage.high)
+
+    def attempt(new: FloatArray) -> tuple[FloatArray, Evaluation, float] | None:
         at = stage.evaluate(new)
         variance = stage.variance(at, weights) if isinstance(weights, float) else weights
         misfit = stage.misfit(at, variance)
-        if misfit < before:
-            return new, at, misfit
-        if _small(stage, new - theta, CONVERGED):
-            break
-    return None
+        return (new, at, misfit) if misfit < before else None
+
+    return halved(attempt, theta, step, (stage.low, stage.high), smallest=CONVERGED * stage.doubt, most=8)

@@ -16,6 +16,7 @@ from updating.frf_update.step import Step
 from updating.models.damping import Matrices
 from updating.prediction.prediction import Prediction
 from updating.update.data.specimen import Specimen
+from updating.update.gauss_newton import strong
 
 WEAK = 0.2
 """Modal constants under this share of a mode's largest are weak evidence on relative errors [-]."""
@@ -69,7 +70,7 @@ def assess(stage: Stage, solved: Solved, calibration: float, repeatability: floa
     rows, load = whitened(stage, slopes, at, stage.variance(at, solved.discrepancy))
     rows = rows * stage.doubt
     _, size, right = np.linalg.svd(rows, full_matrices=False)
-    kept = size > max(DROWNED, 1e-10 * size.max(initial=0.0))
+    kept = strong(size, DROWNED)
     bread = (right[kept].T / size[kept] ** 2) @ right[kept]
     covariance = bread
     if solved.discrepancy > 0:
@@ -145,7 +146,7 @@ def misses(specimen: Specimen, step: Step) -> FloatArray:
     variance = stage.variance(solved.at, solved.discrepancy)
     rows, _ = whitened(stage, stage.slopes(solved.theta, solved.at, measured=False), solved.at, variance)
     _, size, right = np.linalg.svd(rows * stage.doubt, full_matrices=False)
-    kept = size > max(DROWNED, 1e-10 * size.max(initial=0.0))
+    kept = strong(size, DROWNED)
     gain = (right[kept].T / size[kept] ** 2) @ right[kept] @ (rows * stage.doubt).T
     dampers = sum(model_parameter.damper is not None for model_parameter in stage.model_parameters)
     total = np.zeros((len(solved.theta),) * 2)

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from identification.mac import comac
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.places import centres
 from updating.localisation.shapes import shapes_of
@@ -29,13 +30,11 @@ class Comac(Localiser):
     def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return 1 - COMAC of the point nearest to each region's centre [-]."""
         shapes = shapes_of(problem)
-        products = np.sum(np.abs(shapes.measured * shapes.predicted), axis=1) ** 2
-        power = np.sum(shapes.measured**2, axis=1) * np.sum(shapes.predicted**2, axis=1)
-        missing = 1 - products / np.maximum(power, 1e-300)
+        missing = np.nan_to_num(1 - comac(shapes.measured, shapes.predicted))
         at = problem.measured.points[shapes.points]
         middle = centres(problem)[:, : at.shape[1]]
         nearest = np.argmin(np.linalg.norm(middle[:, None] - at[None], axis=2), axis=1)
-        return np.asarray(np.maximum(missing, 0.0)[nearest])
+        return np.asarray(missing[nearest])
 
 
 __all__ = ["Comac"]

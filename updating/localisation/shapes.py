@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import linalg
-from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
+from identification.pairing import counterparts
 from updating.models.absorbers import structural
 from updating.models.state import NOMINAL
 from updating.problem.specimen import SpecimenProblem
@@ -77,8 +77,8 @@ def _modes(problem: SpecimenProblem) -> FloatArray:
     _, vectors = predictor.reduced.eigen(predictor.base)
     elastic = vectors[:, predictor.reduced.structure.rigid_modes :]
     alike = known.T @ structural(elastic, predictor.base.absorbers)
-    rows, columns = linear_sum_assignment(-(alike**2))
-    return np.asarray(elastic[:, columns] * np.sign(alike[rows, columns]))
+    columns = counterparts(-(alike**2))
+    return np.asarray(elastic[:, columns] * np.sign(alike[np.arange(len(columns)), columns]))
 
 
 def _components(

@@ -8,11 +8,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
+from identification.pairing import counterparts, unlikeness
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
-
-FREQUENCY_WEIGHT = 0.5
-"""How much a frequency ratio of e counts against a MAC of zero."""
 
 UNSEEN = 1e-6
 """Motion of a predicted mode where the test roves, over that of the others, under which no test sees it [-]: rounding
@@ -91,17 +89,13 @@ def match(
     if not measured.has_shapes:
         return np.asarray(np.argsort(prediction.frequency)[order])
     trusted = measured.trusted if trusted is None else trusted
-    ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
-    ratio = np.nan_to_num(ratio, nan=3.0)
-    alike = np.nan_to_num(
-        mac_of_constants(measured, prediction, trusted)
-    )  # what has lost its mass is like nothing
-    cost = 1 - alike + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
+    away = np.log(measured.frequency[:, None] / prediction.frequency[None, :])
+    cost = unlikeness(mac_of_constants(measured, prediction, trusted), away)
     if measured.partners is not None:
         columns = _stated(measured, prediction)
         rows = np.flatnonzero((columns >= 0) & (columns < cost.shape[1]))
         cost[rows, columns[rows]] = -AS_STATED
-    return np.asarray(linear_sum_assignment(cost)[1])
+    return counterparts(cost)
 
 
 NEAR = 0.3

@@ -74,6 +74,11 @@ class Prediction(Displayed):
             phase=None if self.phase is None else self.phase[:, modes],
         )
 
+    def overlap(self, other: Prediction) -> FloatArray:
+        """Return the squared products of the modes with another state's, what hangs on either left out, (n, m) [-]."""
+        size = min(len(self.vectors), len(other.vectors))
+        return np.asarray((self.vectors[:size].T @ other.vectors[:size]) ** 2)
+
     @cached_property
     def along(self) -> FloatArray:
         """Derivatives of the constants by the position of the hit, 0 where none is known, (dim, n_frf, n_modes)."""

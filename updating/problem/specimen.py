@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
+from identification.pairing import counterparts
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import Obstacle
 from updating.likelihood.base import NO_DOUBT, Doubt, Quantity, Setting, View
@@ -386,11 +386,10 @@ def _undisturbed(now: Prediction, plain: Prediction, absorbers: Sequence[Absorbe
 
     Paired by modal overlap; what finds no mode of the structure is the mode of the absorber that swings nearest.
     """
-    size = min(len(plain.vectors), len(now.vectors))
-    alike = (now.vectors[:size].T @ plain.vectors[:size]) ** 2
+    alike = now.overlap(plain)
     # what no mode of the structure has of it is the absorbers'
     theirs = np.repeat(1 - alike.sum(axis=1, keepdims=True), len(absorbers), axis=1)
-    columns = linear_sum_assignment(-np.hstack([alike, theirs]))[1]
+    columns = counterparts(-np.hstack([alike, theirs]))
     alone = np.array([np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in absorbers])
     nearest = alone[np.argmin(np.abs(np.log(now.frequency[:, None] / alone)), axis=1)]
     known = np.append(plain.frequency, np.full(len(absorbers), np.nan))[columns]

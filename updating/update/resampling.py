@@ -13,16 +13,10 @@ from acquisition.errors import StudyError
 from updating.case import Case
 from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
-from updating.update.estimate import Estimate
+from updating.update.intervals import check_draws, with_intervals
 from updating.update.result import Update
 from updating.update.run import Fitted, fit, report
 from updating.update.solve import solve
-
-LEVEL = 0.95
-"""Part of the draws that an interval holds."""
-
-FEWEST = 20
-"""Fewer draws do not determine the ends of an interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,10 +103,7 @@ def bootstrap(
     StudyError
         If there are fewer than twenty draws, or the redrawn frequencies do not fit the test.
     """
-    if n < FEWEST:
-        raise StudyError(
-            f"bootstrap: {n} draws are too few for an interval; ask for {FEWEST} or more, better 200"
-        )
+    check_draws(n, better=200)
     fitted = fit(
         cases,
         parameters=parameters,
@@ -123,7 +114,7 @@ def bootstrap(
         data=data,
     )
     draws = _repeat(fitted, rng, n, frequencies or [None] * len(fitted.system.specimens))
-    return Bootstrap(_with_intervals(report(fitted), fitted.system, draws), draws)
+    return Bootstrap(_reported(report(fitted), fitted.system, draws), draws)
 
 
 def _repeat(fitted: Fitted, rng: np.random.Generator, n: int, given: Sequence[FloatArray | None]) -> Draws:
@@ -173,19 +164,10 @@ def _redrawn_shapes(specimen: Specimen, rng: np.random.Generator) -> FloatArray:
     return np.asarray(constants + specimen.errors.draw(rng).reshape(constants.shape))
 
 
-def _with_intervals(update: Update, system: System, draws: Draws) -> Update:
-    tails = (1 - LEVEL) / 2
-    low, high = np.quantile(draws.values, [tails, 1 - tails], axis=0)
-    nominal = np.array([k.nominal for k in system.model_parameters])
-    ends = zip(update.parameters, low * nominal, high * nominal, strict=True)
-    parameters = tuple(_interval(p, float(a), float(b)) for p, a, b in ends)
+def _reported(update: Update, system: System, draws: Draws) -> Update:
+    parameters = with_intervals(update.parameters, draws.values, system.model_parameters)
     warnings = list(update.warnings)
     if draws.converged < len(draws.values):
         lost = len(draws.values) - draws.converged
         warnings.append(f"bootstrap: {lost} of {len(draws.values)} updates did not converge")
     return replace(update, parameters=parameters, warnings=tuple(warnings), draws=len(draws.values))
-
-
-def _interval(estimate: Estimate, low: float, high: float) -> Estimate:
-    ends = (low, high) if estimate.interval is None else estimate.interval
-    return replace(estimate, interval=(min(low, ends[0]), max(high, ends[1])))

@@ -277,16 +277,16 @@ def _estimate(system: System, index: int, coordinate: float, sigma: float) -> Es
     if model_parameter.reach and owner >= 0:
         factor = 1 + model_parameter.reach * value
     return Estimate(
-        model_parameter.name,
-        None if owner < 0 else system.specimens[owner].title,
-        model_parameter.nominal * value,
-        model_parameter.unit,
-        factor,
-        sigma,
-        bool(coordinate <= system.low[index] + margin or coordinate >= system.high[index] - margin),
-        model_parameter.nominal * model_parameter.low,
-        model_parameter.nominal * model_parameter.high,
-        model_parameter.nominal * model_parameter.start,
+        name=model_parameter.name,
+        study=None if owner < 0 else system.specimens[owner].title,
+        value=model_parameter.nominal * value,
+        unit=model_parameter.unit,
+        factor=factor,
+        sigma=sigma,
+        at_bound=bool(coordinate <= system.low[index] + margin or coordinate >= system.high[index] - margin),
+        low=model_parameter.nominal * model_parameter.low,
+        high=model_parameter.nominal * model_parameter.high,
+        initial=model_parameter.nominal * model_parameter.start,
         relative=model_parameter.is_factor,
         quantity=model_parameter.quantity,
     )

@@ -7,12 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.update.bounds import bounded_step
 from updating.update.data.nominal import Evaluation
 from updating.update.data.system import Linear, System
-
-NEGLIGIBLE = 1e-10
-"""Singular values under this share of the largest carry nothing [-]."""
+from updating.update.gauss_newton import bounded_step, halved, least_squares_step, strong
 
 CONVERGED = 1e-7
 """Increments under this share of a parameter's doubt end the iteration [-]."""
@@ -78,17 +75,19 @@ def solve(
     linear, bend = system.linear(theta, evaluations), np.zeros((len(theta), len(theta)))
     for _ in range(steps):
         increment = step(system, linear, theta, bend)
-        new, new_evaluations, moved = _controlled(system, linear, theta, increment)
-        if not moved and bend.any():
+        found = _controlled(system, linear, theta, increment)
+        if found is None and bend.any():
             bend = np.zeros_like(bend)
             continue
-        converged = bool(np.all(np.abs(new - theta) <= rest * system.doubt))
-        if moved:
-            before, linear = linear, system.linear(new, new_evaluations)
-            bend = _bent(bend, before, linear, new - theta, system.doubt)
-            theta, evaluations = new, new_evaluations
-            history.append(theta)
-        if converged or not moved:
+        if found is None:
+            converged = True
+            break
+        moved, (theta, evaluations) = found[0] - theta, found
+        before, linear = linear, system.linear(theta, evaluations)
+        bend = _bent(bend, before, linear, moved, system.doubt)
+        history.append(theta)
+        converged = bool(np.all(np.abs(moved) <= rest * system.doubt))
+        if converged:
             break
     return Solution(theta, evaluations, np.array(history), converged)
 
@@ -131,36 +130,31 @@ def step(system: System, linear: Linear, theta: FloatArray, bend: FloatArray | N
 
 
 def _least(rows: FloatArray, load: FloatArray, bend: FloatArray | None) -> FloatArray:
-    if rows.shape[1] == 0:
-        return np.zeros(0)
-    if bend is not None:
+    if bend is not None and rows.shape[1]:
         normal = rows.T @ rows
         values, vectors = np.linalg.eigh(normal + bend)
         if values.min() > 0.05 * np.linalg.eigvalsh(normal).min() > 0:
             return np.asarray(vectors @ ((vectors.T @ (rows.T @ load)) / values))
-    left, size, right = np.linalg.svd(rows, full_matrices=False)
-    kept = size > NEGLIGIBLE * max(size.max(), 1e-300)
-    return np.asarray(right[kept].T @ ((left[:, kept].T @ load) / size[kept]))
+    return least_squares_step(rows, load)
 
 
 def _controlled(
     system: System, linear: Linear, theta: FloatArray, increment: FloatArray
-) -> tuple[FloatArray, tuple[Evaluation, ...], bool]:
-    """Shorten the step until the misfit does not grow; tell whether anything moved."""
+) -> tuple[FloatArray, tuple[Evaluation, ...]] | None:
+    """Shorten the step until the misfit does not grow; None where it does not come to that."""
     before = system.cost(theta, linear.evaluations) * (1 + 1e-12)
-    for halving in range(14):
-        new = np.clip(theta + increment / 2**halving, system.low, system.high)
+
+    def attempt(new: FloatArray) -> tuple[FloatArray, tuple[Evaluation, ...]] | None:
         evaluations = system.evaluations(new)
         for _ in range(RESTORED):
             if system.cost(new, evaluations) <= before:
-                return new, evaluations, True
+                return new, evaluations
             new = _restored(system, linear, new, evaluations)
             evaluations = system.evaluations(new)
-        if system.cost(new, evaluations) <= before:
-            return new, evaluations, True
-        if np.all(np.abs(increment) / 2**halving <= CONVERGED * system.doubt):
-            break
-    return theta, linear.evaluations, False
+        return (new, evaluations) if system.cost(new, evaluations) <= before else None
+
+    smallest, bounds = CONVERGED * system.doubt, (system.low, system.high)
+    return halved(attempt, theta, increment, bounds, smallest=smallest, most=14)
 
 
 def _restored(
@@ -176,7 +170,7 @@ def _restored(
     left, size, right = np.linalg.svd(
         (root[:, None] * linear.sensitivity) * system.doubt, full_matrices=False
     )
-    known = size > max(1.0, NEGLIGIBLE * float(size.max(initial=0.0)))
+    known = strong(size, 1.0)
     load = left[:, known].T @ (root * system.residual(evaluations))
     back = system.doubt * (right[known].T @ (load / size[known]))
     return np.asarray(np.clip(theta + back, system.low, system.high))

@@ -15,7 +15,7 @@ from acquisition.uff.functions.units import Units
 from acquisition.uff.geometry.systems import Placed, System, place_system
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class NodeSet:
     """Nodes as they stand in a data set 15 or 2411.
 

@@ -29,7 +29,7 @@ FREQUENCY = (18, "Frequency", "Hz")
 UNITY = (1, "Coherence", "NONE")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Record58:
     """A function to be written.
 

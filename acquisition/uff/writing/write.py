@@ -125,10 +125,28 @@ def _hits(test: HammerTest) -> Iterator[Record58]:
         at = point.reference
         for hit in range(point.count):
             title = (f"hit {hit + 1} at {at}: force", "NONE", "NONE", note)
-            yield Record58(title, 1, at, at, 0.0, step, point.force[hit], (TIME, FORCE, NOTHING))
+            yield Record58(
+                title=title,
+                function_type=1,
+                response=at,
+                reference=at,
+                minimum=0.0,
+                increment=step,
+                values=point.force[hit],
+                axes=(TIME, FORCE, NOTHING),
+            )
             for dof, wave in zip(point.responses, point.motion[hit], strict=True):
                 title = (f"hit {hit + 1} at {at}: response {dof}", "NONE", "NONE", note)
-                yield Record58(title, 1, dof, at, 0.0, step, wave, (TIME, MOTIONS[test.form], NOTHING))
+                yield Record58(
+                    title=title,
+                    function_type=1,
+                    response=dof,
+                    reference=at,
+                    minimum=0.0,
+                    increment=step,
+                    values=wave,
+                    axes=(TIME, MOTIONS[test.form], NOTHING),
+                )
 
 
 def _frfs(frfs: FrfSet) -> Iterator[Record58]:
@@ -138,7 +156,25 @@ def _frfs(frfs: FrfSet) -> Iterator[Record58]:
         averages = "NONE" if frfs.averages is None else f"averages {int(frfs.averages[row])}"
         title = (f"FRF {dof} / {at}", "NONE", "NONE", _window(frfs.decay), averages)
         axes = (FREQUENCY, MOTIONS[frfs.form], FORCE)
-        yield Record58(title, 4, dof, at, low, step, frfs.values[row], axes)
+        yield Record58(
+            title=title,
+            function_type=4,
+            response=dof,
+            reference=at,
+            minimum=low,
+            increment=step,
+            values=frfs.values[row],
+            axes=axes,
+        )
         if frfs.coherence is not None:
             title = (f"coherence {dof} / {at}", *title[1:])
-            yield Record58(title, 6, dof, at, low, step, frfs.coherence[row], (FREQUENCY, UNITY, NOTHING))
+            yield Record58(
+                title=title,
+                function_type=6,
+                response=dof,
+                reference=at,
+                minimum=low,
+                increment=step,
+                values=frfs.coherence[row],
+                axes=(FREQUENCY, UNITY, NOTHING),
+            )

@@ -123,6 +123,8 @@ const OPTIONS = {
   displaylogo: false,
   responsive: true,
   modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+  showSendToCloud: false, // nothing is uploaded to anybody
+  plotlyServerURL: "",
   toImageButtonOptions: { format: "svg" },
 };
 

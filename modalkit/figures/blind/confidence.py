@@ -16,7 +16,6 @@ from modalkit.blind.scoring.calibration import CAME_TRUE, ERROR, STATED
 from modalkit.blind.scoring.open_set import AREA, detection, roc_curve
 from modalkit.blind.scoring.score import Score
 from modalkit.blind.scoring.table import ALL, Rate
-from modalkit.figures.dumbbell import key
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -29,6 +28,7 @@ from modalkit.figures.style import (
     caption,
     caption_height,
     head,
+    key,
     new_figure,
     place,
     tidy,

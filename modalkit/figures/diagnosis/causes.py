@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from matplotlib.axes import Axes
 
 from acquisition.quantities import probability
@@ -20,7 +18,7 @@ from modalkit.figures.style import (
     shortened,
     text_width,
 )
-from modalkit.figures.words import parameters, short
+from modalkit.views.charts.causes import Explanation, explanations
 from updating import Diagnosis
 
 ROWS = 7
@@ -34,28 +32,6 @@ UNDER = 3
 
 ROW, LINE = 0.44, 0.16
 """Height of a row and of a line under it [in]."""
-
-
-@dataclass(frozen=True)
-class _Row:
-    label: str
-    detail: str
-    probability: float
-    answer: bool
-
-
-def explanations(diagnosis: Diagnosis) -> list[_Row]:
-    """Return the rows: those of the answer, then the rest by probability, with the tolerances among them."""
-    chosen = set(diagnosis.sets)
-    none = diagnosis.verdict == "none"
-    alone = max(0.0, 1.0 - sum(row.probability for row in diagnosis.ranking))
-    rows = [_Row("tolerances and noise alone", "", alone, none)]
-    for row in diagnosis.ranking:
-        detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
-        if row.p_value < diagnosis.rules.rejected_fit and not none:
-            detail = "does not fit"
-        rows.append(_Row(short(row.effects), detail, row.probability, row.effects in chosen))
-    return sorted(rows, key=lambda row: (not row.answer, -row.probability))
 
 
 def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float) -> None:
@@ -94,7 +70,7 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
         _bracket(axes, ends[-1])
 
 
-def _under(row: _Row, width: float) -> list[str]:
+def _under(row: Explanation, width: float) -> list[str]:
     """Return the text on an answer's parameters below its bar."""
     if not row.answer:
         return []
@@ -106,7 +82,7 @@ def _under(row: _Row, width: float) -> list[str]:
     return lines[:UNDER]
 
 
-def _bar(axes: Axes, row: _Row, bottom: float, width: float) -> None:
+def _bar(axes: Axes, row: Explanation, bottom: float, width: float) -> None:
     colour = BLUE if row.answer else FAINT
     axes.barh(bottom, width, height=0.09, color=GRID, align="edge")
     axes.barh(bottom, width * min(row.probability, 1.0), height=0.09, color=colour, align="edge")

@@ -6,12 +6,9 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
+from modalkit.figures.chart import draw_chart
 from modalkit.figures.diagnosis.causes import draw_causes
-from modalkit.figures.diagnosis.errors import ModeErrors, mode_errors
-from modalkit.figures.diagnosis.fitted import Fitted
-from modalkit.figures.diagnosis.held_out import draw_held_out, rivals
 from modalkit.figures.diagnosis.where import draw_channels, draw_where
-from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import (
     INK,
     MARGIN,
@@ -26,8 +23,12 @@ from modalkit.figures.style import (
     new_figure,
     place,
 )
-from modalkit.figures.words import answer, evidence
 from modalkit.output.summary import separated
+from modalkit.output.words import answer, evidence
+from modalkit.views.charts.causes import closing_chart, rivals
+from modalkit.views.charts.gap import gap_chart
+from modalkit.views.mode_errors import ModeErrors, mode_errors
+from modalkit.workflow.fitted import Fitted
 from updating import Case, Diagnosis
 
 LEFT, MIDDLE, RIGHT = (1.3, 2.5), (4.5, 3.3), (8.35, 3.3)
@@ -77,23 +78,15 @@ class _Rows:
     @classmethod
     def of(cls, above: float, modes: int, rivals: int) -> _Rows:
         tall = max(3.3, 0.26 * modes)
-        upper, low = above + 0.72, 0.36 * rivals + 0.25
+        upper, low = above + 0.72, 0.36 * rivals + 0.5
         lower = upper + tall + 1.12
         return cls(upper, tall, lower, low, lower + low + 0.62)
 
 
 def _upper(figure: Figure, diagnosis: Diagnosis, case: Case | None, errors: ModeErrors, rows: _Rows) -> None:
     top, tall = rows.upper, rows.tall
-    gap = place(figure, LEFT[0], top, LEFT[1], tall, name="gap")
-    dumbbells(
-        gap,
-        errors.frequency,
-        errors.before,
-        errors.after,
-        floor=errors.floor,
-        doubt=errors.doubt,
-        signed=errors.signed,
-        label=errors.label,
+    draw_chart(
+        figure, gap_chart(errors), left=LEFT[0], top=top + 0.2, width=LEFT[1], height=tall - 0.2, name="gap"
     )
     heading(figure, MARGIN, top - 0.42, "How large it is, mode by mode")
     draw_causes(
@@ -113,8 +106,15 @@ def _upper(figure: Figure, diagnosis: Diagnosis, case: Case | None, errors: Mode
 
 def _lower(figure: Figure, diagnosis: Diagnosis, rows: _Rows) -> None:
     heading(figure, MARGIN, rows.lower - 0.12, "Whether it holds on modes left out of the fit")
-    held = place(figure, 3.15, rows.lower, 4.7, rows.low, name="held out")
-    draw_held_out(held, diagnosis, room=3.15 - MARGIN - 0.1)
+    draw_chart(
+        figure,
+        closing_chart(diagnosis),
+        left=3.15,
+        top=rows.lower + 0.3,
+        width=4.1,
+        height=rows.low - 0.3,
+        name="held out",
+    )
     heading(figure, RIGHT[0], rows.lower - 0.12, "What to measure next")
     axes = bare(place(figure, RIGHT[0], rows.lower, RIGHT[1], rows.low, name="next"))
     axes.set_xlim(0, RIGHT[1])

@@ -8,9 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
-from acquisition.display import counted
 from acquisition.quantities import hertz, probability
-from modalkit.figures.diagnosis.where import Frame, draw_where, outline, spans
+from modalkit.figures.diagnosis.where import Frame, draw_where
 from modalkit.figures.style import (
     BLUE,
     GRID,
@@ -31,7 +30,8 @@ from modalkit.figures.style import (
     shortened,
     text_width,
 )
-from modalkit.figures.words import located, phrase
+from modalkit.output.location import localisation_title
+from modalkit.views.outline import outline
 from updating import Case, Diagnosis
 from updating.diagnosis.answer.contributions import columns_of
 
@@ -52,9 +52,6 @@ ROW = 0.34
 
 FAR = 10.0
 """Standard deviations at which the colour of a cell is full."""
-
-NAMED = 4
-"""Most sets of effects that a title names; of more, it states how many [-]."""
 
 MOST = 20
 """Most modes in the table: those that add the most."""
@@ -106,49 +103,6 @@ def _tall(diagnosis: Diagnosis, case: Case | None) -> float:
     if case is not None and case.spec.imported is not None:
         return DEEP
     return TALL if outline(diagnosis, case).width else FLAT
-
-
-def localisation_title(diagnosis: Diagnosis) -> str:
-    """State where the gap sits, as far as the answer's own sets of effects show it."""
-    where = diagnosis.where
-    if where.channel == "none":
-        return "There is no gap beyond tolerances and noise"
-    top = max(where.zones, key=lambda z: z.probability, default=None)
-    if diagnosis.verdict == "unknown" and top is not None:
-        return f"No explanation was found for the gap; a change of {top.name} alone would fit best"
-    if _in_doubt(diagnosis):
-        return "These data cannot show whether the gap lies in the measurement or in the structure"
-    if spans(diagnosis):
-        points = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
-        inside = (
-            f", {located(diagnosis)}" if where.location is not None and where.channel != "measurement" else ""
-        )
-        return f"The gap sits in the measurement{points if where.points else ''} and in the structure{inside}"
-    if where.channel == "measurement" and (where.points or where.location is None):
-        named = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
-        return f"The gap sits in the measurement{named if where.points else ''}, not in the structure"
-    if where.location is not None:
-        others = len(where.locations) - 1
-        more = f", or at {'another place' if others == 1 else f'{others} other places'}" if others else ""
-        leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
-        if diagnosis.verdict == "class" and leader:
-            return f"If it is {phrase(leader)}: {located(diagnosis)}{more}"
-        whole = "Part of the gap" if diagnosis.sets and len(diagnosis.sets[0]) > 1 else "The gap"
-        return f"{whole} sits {located(diagnosis)}{more}"
-    if diagnosis.verdict not in ("named", "class"):
-        return "No explanation was found for the gap, and it has no single place"
-    listed = [phrase(names) for names in diagnosis.sets[:NAMED]]
-    if len(diagnosis.sets) > NAMED:
-        listed.append(counted(len(diagnosis.sets) - NAMED, "other"))
-    whole = listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} or {listed[-1]}"
-    return f"The gap has no single place: {whole} acts all over the structure"
-
-
-def _in_doubt(diagnosis: Diagnosis) -> bool:
-    """Return whether some sets of the answer lie in the measurement alone and others do not."""
-    acting = [{diagnosis.known[n].channel for n in names if n in diagnosis.known} for names in diagnosis.sets]
-    alone = [channels == {"measurement"} for channels in acting]
-    return diagnosis.verdict == "class" and any(alone) and not all(alone)
 
 
 def _note(diagnosis: Diagnosis) -> str:
@@ -261,6 +215,3 @@ def _cells(axes: Axes, values: FloatArray, left: float, y: float, cell: float) -
             ha="center",
             va="center",
         )
-
-
-__all__ = ["localisation_figure", "localisation_title"]

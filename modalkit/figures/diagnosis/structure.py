@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from acquisition.arrays import FloatArray
 from modalkit.figures.space import View, draw_directions, draw_faces, draw_lines
 from modalkit.figures.style import FAINT, INK, MUTED, ORANGE, PROBABILITY, SMALL, TEXT, text_width
-from modalkit.figures.words import located
+from modalkit.output.words import located
 from modalkit.views.mesh import Mesh, mesh_of
 from updating import Case, Diagnosis
 

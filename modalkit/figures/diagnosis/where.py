@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from acquisition.arrays import FloatArray
 from acquisition.quantities import probability
 from modalkit.figures.diagnosis.structure import draw_structure
 from modalkit.figures.style import (
@@ -25,113 +24,10 @@ from modalkit.figures.style import (
     bare,
     text_width,
 )
-from modalkit.figures.words import located
-from updating import Case, Diagnosis, Measured
-from updating.models.imported import Imported
-
-
-@dataclass(frozen=True, eq=False)
-class Outline:
-    """What is drawn of a structure.
-
-    Parameters
-    ----------
-    length, width : float
-        Size along x and y; ``width`` is 0 for a beam [m].
-    zones : list of (x0, x1, y0, y1, probability)
-        Regions [m, m, m, m, -].
-    points : (n, 2) array
-        Test points [m].
-    sensors : (n, 2) array
-        Those that carry a transducer [m].
-    clamped : tuple of str
-        Clamped edges.
-    view : tuple of int
-        Axes of the model that are drawn to the right and upwards.
-    origin : tuple of float
-        Where the drawing's corner lies on them [m].
-    """
-
-    length: float
-    width: float
-    zones: list[tuple[float, float, float, float, float]]
-    points: FloatArray
-    sensors: FloatArray
-    clamped: tuple[str, ...]
-    view: tuple[int, int] = (0, 1)
-    origin: tuple[float, float] = (0.0, 0.0)
-
-    def flat(self, place: tuple[float, float, float]) -> tuple[float, float]:
-        """Return a place of the model as it is drawn [m]."""
-        return place[self.view[0]] - self.origin[0], place[self.view[1]] - self.origin[1]
-
-    @property
-    def even(self) -> bool:
-        """Whether no zone stands out."""
-        values = [zone[4] / ((zone[1] - zone[0]) * max(zone[3] - zone[2], 1e-9)) for zone in self.zones]
-        return not values or bool(max(values) < 1.5 * np.mean(values))
-
-
-def outline(diagnosis: Diagnosis, case: Case | None) -> Outline:
-    """Gather what is known of the structure; without a case, what the zones' centres show."""
-    found = {zone.name: zone.probability for zone in diagnosis.where.zones}
-    if case is None:
-        return _from_centres(diagnosis)
-    spec, test = case.spec, case.measured
-    if spec.imported is not None:
-        return _imported_outline(spec.imported, test)
-    width = spec.width if spec.kind == "plate" else 0.0
-    zones = [(*r.x, *(r.y or (0.0, width)), found.get(r.name, 0.0)) for r in spec.regions]
-    points = np.zeros((len(test.points), 2))
-    points[:, : test.points.shape[1]] = test.points
-    return Outline(spec.length, width, zones, points, points[list(test.sensors)], spec.clamped)
-
-
-def _imported_outline(imported: Imported, test: Measured) -> Outline:
-    """Draw the box of imported nodes along its two longest sides; what the regions hold is not known as an outline."""
-    low, high = imported.extents
-    view = np.sort(np.argsort(high - low, kind="stable")[-2:])
-    size = np.maximum((high - low)[view], 1e-3 * (high - low).max())
-    points = (test.points - low)[:, view]
-    first, second = (int(axis) for axis in view)
-    return Outline(
-        float(size[0]),
-        float(size[1]),
-        [(0.0, float(size[0]), 0.0, float(size[1]), 1.0)],
-        points,
-        points[list(test.sensors)],
-        (),
-        (first, second),
-        (float(low[first]), float(low[second])),
-    )
-
-
-def _from_centres(diagnosis: Diagnosis) -> Outline:
-    zones = diagnosis.where.zones
-    x = _edges([z.center[0] for z in zones])
-    flat = len({z.center[1] for z in zones}) < 2
-    y = {0.0: (0.0, 0.0)} if flat else _edges([z.center[1] for z in zones])
-    cells = [(*x[z.center[0]], *(y[0.0] if flat else y[z.center[1]]), z.probability) for z in zones]
-    length, width = max((c[1] for c in cells), default=1.0), max((c[3] for c in cells), default=0.0)
-    return Outline(length, width, cells, np.zeros((0, 2)), np.zeros((0, 2)), ())
-
-
-def _edges(centres: list[float]) -> dict[float, tuple[float, float]]:
-    """Return the limits about each centre, halfway to its neighbours, the first and last symmetric."""
-    values = np.unique(centres)
-    if len(values) < 2:
-        return {float(v): (0.0, 2 * float(v) or 1.0) for v in values}
-    middle = (values[1:] + values[:-1]) / 2
-    low = np.r_[2 * values[0] - middle[0], middle]
-    high = np.r_[middle, 2 * values[-1] - middle[-1]]
-    return {float(v): (float(a), float(b)) for v, a, b in zip(values, low, high, strict=True)}
-
-
-def spans(diagnosis: Diagnosis) -> bool:
-    """Return whether the first explanation has a cause in the measurement and one in the structure."""
-    leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
-    acting = {diagnosis.known[name].channel for name in leader if name in diagnosis.known}
-    return diagnosis.verdict in ("named", "class") and "measurement" in acting and len(acting) > 1
+from modalkit.output.location import spans
+from modalkit.output.words import located
+from modalkit.views.outline import Outline, outline
+from updating import Case, Diagnosis
 
 
 def draw_where(axes: Axes, diagnosis: Diagnosis, case: Case | None, *, width: float, height: float) -> None:

@@ -12,8 +12,10 @@ from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.form import FORMS
 from acquisition.quantities import percent
-from modalkit.figures.curves import Curve, Panel, curves_figure
+from modalkit.figures.chart import sheet_figure
 from modalkit.papers.a.chain import Walk, Walked
+from modalkit.views.chart import Sheet
+from modalkit.views.charts.frf import Curve, frf_chart
 from updating.models.state import NOMINAL, State
 from updating.nominal import predictor_of
 
@@ -74,11 +76,14 @@ def _figure(one: Walk) -> Figure:
     estimate = walked.result.parameters[0]
     states = {
         "before": NOMINAL,
-        "updated": State(factors={table.parameter: float(estimate.factor or 1.0)}),
+        "after": State(factors={table.parameter: float(estimate.factor or 1.0)}),
     }
-    labels = {"before": "model before", "updated": f"updated: {table.parameter} × {estimate.factor:.3f}"}
-    curves = [Curve("measured", "synthetic test", frfs.values[row])]
-    curves += [Curve(part, labels[part], model_frf(walked, frfs, state)) for part, state in states.items()]
+    labels = {"before": "model before", "after": f"updated: {table.parameter} × {estimate.factor:.3f}"}
+    lines = frfs.frequency
+    curves = [Curve("measured", "synthetic test", lines, frfs.values[row])]
+    curves += [
+        Curve(part, labels[part], lines, model_frf(walked, frfs, state)) for part, state in states.items()
+    ]
     after = walked.result.rms_percent("after")
     before = walked.result.rms_percent("before")
     statement = (
@@ -88,10 +93,8 @@ def _figure(one: Walk) -> Figure:
         f"Paper A, Fig. {shown.number}, ours  ·  {table.models[0].program} model of Table {table.number} with the "
         f"identified damping ratios  ·  accelerance at the accelerometer"
     )
-    panel = Panel(
-        f"hit and seen at point {frfs.responses[row].node}", frfs.frequency, tuple(curves), frfs.unit
-    )
-    return curves_figure(statement, note, [panel])
+    chart = frf_chart("frf", f"hit and seen at point {frfs.responses[row].node}", "", frfs.unit, curves)
+    return sheet_figure(Sheet(statement, note, [chart]))
 
 
 def _at_the_sensor(frfs: FrfSet) -> int:

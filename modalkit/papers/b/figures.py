@@ -7,11 +7,12 @@ from collections.abc import Mapping
 from matplotlib.figure import Figure
 
 from acquisition.form import FORMS, UNITS
-from modalkit.figures.curves import Curve, Panel, curves_figure
-from modalkit.figures.update.evolution import Course, Courses, evolution_figure
-from modalkit.figures.update.frac import frac_figure
+from modalkit.figures.chart import chart_figure, sheet_figure
 from modalkit.papers.b import printed
 from modalkit.papers.b.staged import Staged
+from modalkit.views.chart import Axis, Sheet
+from modalkit.views.charts.frf import Curve, frf_chart
+from modalkit.views.charts.update import Course, course_chart, frac_chart
 from updating.models.state import State
 
 NODES = (4, 11)
@@ -36,12 +37,12 @@ def figures_b(update: Staged) -> dict[str, Figure]:
     return {
         "b_fig_4": _frfs(update, 4, "Updating the section moves the resonances; their height waits for damping",
                          "undamped, as the paper's first stage",
-                         {"before": bare, "updated": first.plus(bare)}),
+                         {"before": bare, "after": first.plus(bare)}),
         "b_fig_5": _courses(update, 5, printed.SECTION),
         "b_fig_6": _frac(update, 6, {"before": bare, "section updated": first.plus(bare)}, "undamped models",
                          "Without damping in the model FRAC stays low, whatever the section: {before} and {after}"),
         "b_fig_7": _frfs(update, 7, "Damping by region brings the model's FRFs onto the measured ones",
-                         "section updated in both", {"before": first, "updated": both}),
+                         "section updated in both", {"before": first, "after": both}),
         "b_fig_8": _courses(update, 8, printed.DAMPERS),
         "b_fig_9": _frac(update, 9, {"estimated damping": first, "damping updated": both}, "section updated in both",
                          "Damping by region lifts the mean FRAC from {before} to {after}"),
@@ -54,33 +55,36 @@ def _frfs(update: Staged, number: int, statement: str, what: str, states: Mappin
     back = frfs.laplace ** FORMS.index(frfs.form)
     measured = frfs.values / back
     models = {part: taped.values(state) / back for part, state in states.items()}
-    labels = {"before": "model before", "updated": "updated model"}
+    labels = {"before": "model before", "after": "updated model"}
     nodes = [r.node for r in frfs.responses]
     panels = []
     for row in (nodes.index(node) for node in NODES):
-        curves = [Curve("measured", "synthetic test", measured[row])]
-        curves += [Curve(part, labels[part], values[row]) for part, values in models.items()]
+        curves = [Curve("measured", "synthetic test", frfs.frequency, measured[row])]
+        curves += [Curve(part, labels[part], frfs.frequency, values[row]) for part, values in models.items()]
         title = f"seen at point {nodes[row]}, hit at point {frfs.references[row].node}"
-        panels.append(Panel(title, frfs.frequency, tuple(curves), UNITS["receptance"], 135.0))
+        panels.append(frf_chart(f"frf-{row}", title, "", UNITS["receptance"], curves))
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances"
-    return curves_figure(statement, note, panels)
+    return sheet_figure(Sheet(statement, note, panels), columns=1)
 
 
 def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, statement: str) -> Figure:
     taped = update.taped
-    bars = {name: taped.frac_of(state) for name, state in states.items()}
-    before, after = (f"{v.mean():.2f}" for v in bars.values())
+    bars = [taped.frac_of(state) for state in states.values()]
+    before, after = (f"{v.mean():.2f}" for v in bars)
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances, 5-600 Hz"
     statement = statement.format(before=before, after=after)
-    return frac_figure(statement, note, [f"{r.node}" for r in taped.frfs.responses], bars)
+    first, second = states
+    chart = frac_chart([f"{r.node}" for r in taped.frfs.responses], bars[0], bars[1], (first, second))
+    return chart_figure(chart, title=statement, note=note)
 
 
 def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, float, float]]) -> Figure:
     panels: dict[str, list[Course]] = {}
+    repeats: dict[str, tuple[int, ...]] = {}
     for parameter, scale, _, given in rows.values():
         region, name = parameter.split(".")
-        course = Course(region, scale * update.courses[parameter], given, update.repeats[parameter])
-        panels.setdefault(name, []).append(course)
+        panels.setdefault(name, []).append(Course(region, scale * update.courses[parameter], given))
+        repeats.setdefault(name, update.repeats[parameter])
     damped = "alpha" in panels
     statement = (
         "Alpha and beta under the tape grow far above those of the bare steel"
@@ -88,13 +92,16 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
         else "Area and inertia grow by a third: the test's calibration, not the beam"
     )
     note = (
-        f"Paper B, Fig. {number}, ours  ·  stage {2 if damped else 1}  ·  dotted: what the paper printed  ·  "
-        "grey: where the stage was taken up again"
+        f"Paper B, Fig. {number}, ours  ·  stage {2 if damped else 1}  ·  dashed: what the paper printed  ·  "
+        "dotted: where the stage was taken up again"
     )
-    courses = [
-        Courses(name, _unit(name), tuple(lines), logarithmic=name == "beta") for name, lines in panels.items()
+    charts = [
+        course_chart(
+            f"course-{name}", name, Axis(f"[{_unit(name)}]", log=name == "beta"), lines, repeats=repeats[name]
+        )
+        for name, lines in panels.items()
     ]
-    return evolution_figure(statement, note, courses)
+    return sheet_figure(Sheet(statement, note, charts), columns=1, tall=2.2)
 
 
 def _unit(name: str) -> str:

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from modalkit.planning.changes import (
-    CALIBRATED,
     Change,
     Gain,
     baseline,
@@ -20,6 +19,7 @@ from modalkit.planning.changes import (
 )
 from modalkit.planning.design import Design
 from modalkit.planning.own.layout import Layout
+from updating.diagnosis.next_test.instruments import Chain
 
 MORE = 2
 """So many points are proposed."""
@@ -48,7 +48,7 @@ def own_changes(
     if design.shapes:
         yield from _drive_point(design, layout)
         yield from _points(design, layout, worth)
-        if design.absolute and design.calibration > CALIBRATED and not design.baseline:
+        if design.absolute and design.calibration > Chain.sigma and not design.baseline:
             yield calibrated(design)
     else:
         yield _shapes_too(design, layout)

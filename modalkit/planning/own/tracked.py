@@ -10,10 +10,9 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from acquisition.arrays import FloatArray, IntArray
-from updating.prediction.assignment import FREQUENCY_WEIGHT
+from acquisition.arrays import IntArray
+from identification.pairing import counterparts, unlikeness
 from updating.prediction.prediction import Prediction
 from updating.problem.specimen import SpecimenProblem
 
@@ -22,17 +21,13 @@ class Tracked(SpecimenProblem):
     """A problem whose data are the nominal model's own."""
 
     @cached_property
-    def _own(self) -> FloatArray:
-        return self.predictor.predict(at_least=self.reach).select(self.order).vectors
+    def _own(self) -> Prediction:
+        return self.predictor.predict(at_least=self.reach).select(self.order)
 
     def _match(self, prediction: Prediction) -> IntArray:
         """Return which predicted mode each of the nominal model's has become."""
-        test = self.measured
-        nominal = self._own
-        size = min(len(nominal), len(prediction.vectors))
-        alike = (nominal[:size].T @ prediction.vectors[:size]) ** 2
-        ratio = np.log(test.frequency[:, None] / prediction.frequency[None, :])
+        alike = self._own.overlap(prediction)
+        ratio = np.log(self.measured.frequency[:, None] / prediction.frequency[None, :])
         ratio = np.nan_to_num(ratio, nan=3.0, posinf=3.0, neginf=-3.0)
         common = np.median(ratio[np.arange(len(alike)), alike.argmax(axis=1)])
-        cost = 1 - np.nan_to_num(alike) + FREQUENCY_WEIGHT * np.minimum(np.abs(ratio - common), 3.0)
-        return np.asarray(linear_sum_assignment(cost)[1])
+        return counterparts(unlikeness(alike, ratio - common))

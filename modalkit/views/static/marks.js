@@ -38,7 +38,7 @@ function line(group, series, { x, y }) {
     if (known) path += `${on ? "L" : "M"}${n(a)},${n(b)}`;
     on = known;
   });
-  group.append(s("path", { d: path, class: `line ${series.colour}${series.dash ? " dash" : ""}` }));
+  group.append(s("path", { d: path, class: `line ${series.colour}${series.dash ? " dash" : ""}`, style: series.width && `stroke-width: ${series.width}` }));
 }
 
 function points(group, series, { x, y }) {

@@ -35,7 +35,7 @@ export function plot(place, given, chosen) {
   );
   const inner = s("g", { "clip-path": `url(#${cut})` });
   svg.append(clip, inner);
-  for (const one of given.lines ?? []) {
+  for (const one of [...(given.lines ?? []), ...(given.modes ?? [])]) {
     const at = scales.x.at(one);
     inner.append(s("path", { d: `M${at},${top}V${height - bottom}`, class: "line muted dot" }));
   }

@@ -68,7 +68,18 @@ def test_its_covariance_between_responses_agrees(rng):
 
 
 def test_hits_left_out_are_never_drawn(rng):
-    verdicts = [HitVerdict(Dof(1, 3), 1, False, ("by hand",), 1.0, 1e-3, 1.0, 1.0)]
+    verdicts = [
+        HitVerdict(
+            point=Dof(1, 3),
+            hit=1,
+            used=False,
+            reasons=("by hand",),
+            peak=1.0,
+            width=1e-3,
+            band10=1.0,
+            band20=1.0,
+        )
+    ]
     test = rig(2)
     spoiled = np.array(test.points[0].motion)
     spoiled[0] *= 1e6

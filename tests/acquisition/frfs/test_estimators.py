@@ -45,7 +45,16 @@ def exact(laplace):
 
 
 def verdict(hit: int, used: bool) -> HitVerdict:
-    return HitVerdict(Dof(1, 3), hit, used, () if used else ("by hand",), 1.0, 1e-3, 100.0, 200.0)
+    return HitVerdict(
+        point=Dof(1, 3),
+        hit=hit,
+        used=used,
+        reasons=() if used else ("by hand",),
+        peak=1.0,
+        width=1e-3,
+        band10=100.0,
+        band20=200.0,
+    )
 
 
 def test_variance_is_the_scatter_that_occurs():

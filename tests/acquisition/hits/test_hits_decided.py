@@ -11,7 +11,16 @@ from acquisition.hits.verdicts import decide, rejected_points, usual_fault
 
 
 def verdict(point, hit, used=True, reasons=()):
-    return HitVerdict(point, hit, used, tuple(reasons), 100.0, 1e-3, 500.0, 800.0)
+    return HitVerdict(
+        point=point,
+        hit=hit,
+        used=used,
+        reasons=tuple(reasons),
+        peak=100.0,
+        width=1e-3,
+        band10=500.0,
+        band20=800.0,
+    )
 
 
 VERDICTS = (

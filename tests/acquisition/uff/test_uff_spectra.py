@@ -48,15 +48,48 @@ def write(path: Path, spectra: Spectra, **options: object) -> UffContent:
     records = []
     if options.get("force", True):
         axes = (HERTZ, (13, "Force", label[0]), (0, "NONE", "NONE"))
-        records.append(Record58(averages, auto_type, AT, AT, 0.0, DF, spectra.gff, axes))
+        records.append(
+            Record58(
+                title=averages,
+                function_type=auto_type,
+                response=AT,
+                reference=AT,
+                minimum=0.0,
+                increment=DF,
+                values=spectra.gff,
+                axes=axes,
+            )
+        )
     for row, dof in enumerate(RESPONSES):
         gxf = spectra.gxf[row].conj() if options.get("conjugate") else spectra.gxf[row]
         axes = (HERTZ, (12, "Acceleration", label[2]), (13, "Force", "N"))
-        records.append(Record58(averages, 3, dof, AT, 0.0, DF, gxf, axes))
+        records.append(
+            Record58(
+                title=averages,
+                function_type=3,
+                response=dof,
+                reference=AT,
+                minimum=0.0,
+                increment=DF,
+                values=gxf,
+                axes=axes,
+            )
+        )
         if options.get("motion", True):
             axes = (HERTZ, (12, "Acceleration", label[1]), (0, "NONE", "NONE"))
             scale = options.get("scale", 1.0)
-            records.append(Record58(averages, auto_type, dof, dof, 0.0, DF, scale * spectra.gxx[row], axes))
+            records.append(
+                Record58(
+                    title=averages,
+                    function_type=auto_type,
+                    response=dof,
+                    reference=dof,
+                    minimum=0.0,
+                    increment=DF,
+                    values=scale * spectra.gxx[row],
+                    axes=axes,
+                )
+            )
     head = options.get("units", units_set())
     parts = [header_set("spectra"), head]
     for record in records:

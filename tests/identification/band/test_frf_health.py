@@ -33,7 +33,16 @@ def model(*, damping: float = 0.01, windows: Windows | None = None, wandering: f
 
 
 def verdict(number: int, reason: str = "") -> HitVerdict:
-    return HitVerdict(Dof(1, 3), number, not reason, (reason,) if reason else (), 100.0, 1e-3, 300.0, 500.0)
+    return HitVerdict(
+        point=Dof(1, 3),
+        hit=number,
+        used=not reason,
+        reasons=(reason,) if reason else (),
+        peak=100.0,
+        width=1e-3,
+        band10=300.0,
+        band20=500.0,
+    )
 
 
 def test_sound_frfs_need_no_word() -> None:

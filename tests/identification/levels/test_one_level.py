@@ -113,9 +113,20 @@ def test_hits_that_do_not_show_a_mode_do_not_rule_its_damping() -> None:
     sigma = np.where(shown, 1e-5, 0.1)[:, None]
     nothing = np.zeros((18, 1))
     found = LevelDependence(
-        np.zeros(1), np.ones(1), np.zeros(1), np.ones(1), 50.0, 30.0, 70.0, np.linspace(30, 70, 18),
-        np.arange(18) // 2, nothing, nothing + 1e-5, 1e-3 + sigma * rng.standard_normal((18, 1)), sigma,
-    )  # fmt: skip
+        slope=np.zeros(1),
+        slope_sigma=np.ones(1),
+        damping_slope=np.zeros(1),
+        damping_slope_sigma=np.ones(1),
+        level=50.0,
+        weakest=30.0,
+        strongest=70.0,
+        levels=np.linspace(30, 70, 18),
+        point=np.arange(18) // 2,
+        shifts=nothing,
+        sigmas=nothing + 1e-5,
+        damping_shifts=1e-3 + sigma * rng.standard_normal((18, 1)),
+        damping_sigmas=sigma,
+    )
     damping, spread = hits_damping(found)
     assert damping == pytest.approx(1e-3, abs=3e-5)
     assert 1e-6 < spread[0] < 1e-4

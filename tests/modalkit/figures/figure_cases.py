@@ -66,16 +66,16 @@ def hammered(points: int, hits: int) -> HammerTest:
 def verdicts_of(test: HammerTest, bad: set[tuple[int, int]]) -> list[HitVerdict]:
     return [
         HitVerdict(
-            point.reference,
-            hit,
-            (point.reference.node, hit) not in bad,
-            ("double hit: a second pulse of 43 % after 5.1 ms",)
+            point=point.reference,
+            hit=hit,
+            used=(point.reference.node, hit) not in bad,
+            reasons=("double hit: a second pulse of 43 % after 5.1 ms",)
             if (point.reference.node, hit) in bad
             else (),
-            float(point.force[hit - 1].max()),
-            2e-3,
-            600.0,
-            900.0,
+            peak=float(point.force[hit - 1].max()),
+            width=2e-3,
+            band10=600.0,
+            band20=900.0,
         )
         for point in test.points
         for hit in range(1, point.count + 1)

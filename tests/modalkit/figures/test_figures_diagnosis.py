@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modalkit.figures import diagnosis_figure
-from modalkit.figures.diagnosis import gap_figure
-from modalkit.figures.diagnosis.errors import ModeErrors, mode_errors
-from modalkit.figures.words import answer
+from modalkit.figures.charts import gap_figure
+from modalkit.output.words import answer
+from modalkit.views.mode_errors import ModeErrors, mode_errors
 from updating.diagnosis.answer.result import ParameterEstimate, Ranked
 from updating.problem.width import stiffening
 
@@ -124,6 +124,6 @@ def test_the_title_of_no_gap_counts_the_rings_outside_the_band(rings: int) -> No
     before = np.where(np.arange(count) < rings, 2.0, 0.1)
     doubt = np.full(count, 0.5)
     errors = ModeErrors(np.linspace(10, 90, count), before, None, doubt / 5, doubt, "frequency")
-    message = words(gap_figure(diagnosis_of("beam", verdict="none"), errors))
+    message = words(gap_figure(errors))
     assert f"{rings or 'none'} outside the band of noise and tolerances" in message
     assert "within" not in message

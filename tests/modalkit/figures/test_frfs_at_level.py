@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from acquisition.form import FORMS
-from modalkit.figures.diagnosis import Fitted
-from modalkit.figures.diagnosis.frfs import at_level
 from modalkit.samples import sample_file
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
+from modalkit.workflow.fitted import Fitted
+from modalkit.workflow.overlaid import at_level
 from updating.diagnosis.diagnose import pose
 from updating.models.state import State
 

@@ -9,7 +9,7 @@ from figure_cases import case_of, diagnosis_of
 from figure_text import assert_legible, panels, words
 
 from modalkit.figures import localisation_figure
-from modalkit.figures.diagnosis.localisation import localisation_title
+from modalkit.output.location import localisation_title
 from updating import Diagnosis
 
 

@@ -14,9 +14,9 @@ from conforming import departures
 from acquisition import Dof, FrfSet
 from modalkit.cli import main
 from modalkit.figures import overlay_figure
-from modalkit.figures.overlay import chosen_frfs
 from modalkit.output.schemas import CorrelationDocument
 from modalkit.samples import sample_file
+from modalkit.views.charts.frfs import chosen_frfs
 from updating.correlation.frfs import CorrelatedFrfs
 
 
@@ -51,9 +51,11 @@ def test_both_curves_are_in_every_panel() -> None:
     figure = overlay_figure(both)
     panels = {a.get_label(): a for a in figure.axes}
     assert len(panels) == 8
-    curves = {line.get_label(): line for line in panels["magnitude 3+Z / 2-Z"].lines}
+    curves = {line.get_label(): line for line in panels["3+Z / 2-Z (best FRAC)"].lines}
     assert curves["measured"].get_ydata() == pytest.approx(np.abs(both.measured.values[1]))
-    assert curves["model"].get_ydata() == pytest.approx(1.5 * np.abs(both.measured.values[1]))
+    assert curves["unchanged model, FRAC 0.900"].get_ydata() == pytest.approx(
+        1.5 * np.abs(both.measured.values[1])
+    )
     message = " ".join(t.get_text() for t in figure.texts)
     assert "4 of 5 FRFs" in message
     assert "window of 4 1/s" in message

@@ -106,7 +106,16 @@ def test_the_record_of_an_identification(tmp_path: Path) -> None:
 def test_the_record_of_a_hit() -> None:
     from modalkit.output.documents import hit_document
 
-    verdict = HitVerdict(Dof(3, -3), 2, False, ("double hit",), 1.0, 1.0, 1.0, 1.0)
+    verdict = HitVerdict(
+        point=Dof(3, -3),
+        hit=2,
+        used=False,
+        reasons=("double hit",),
+        peak=1.0,
+        width=1.0,
+        band10=1.0,
+        band20=1.0,
+    )
     assert written(hit_document(verdict)) == {
         "point": "3-Z",
         "hit": 2,

@@ -22,15 +22,16 @@ from test_localisation_figure import diagnosis_with
 
 from acquisition import Dof, FrfSet, InputError
 from modalkit.cli import main
-from modalkit.figures.diagnosis import fitted
-from modalkit.figures.diagnosis.frfs import LINES, selected_lines
+from modalkit.figures.diagnosis.all import Drawing, drawings
 from modalkit.output.summary import summary_text
-from modalkit.report import Drawing, diagnosis_report, drawings, write_report
+from modalkit.report import diagnosis_report, write_report
 from modalkit.report.html import Column, element, table, text
 from modalkit.report.place import BEGIN
 from modalkit.report.provenance import fingerprint
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, open_study
+from modalkit.workflow.fitted import fitted
+from modalkit.workflow.overlaid import LINES, selected_lines
 from updating import Diagnosis
 from updating.diagnosis.answer.result import Gap, HeldPoints, ParameterEstimate, Ranked, Shrink
 from updating.effects import Lack, Obstacle

@@ -16,17 +16,18 @@ from hypothesis import strategies as st
 from test_localisation_figure import diagnosis_with
 
 from acquisition import Dof, FrfSet
-from identification import pole_origins
-from modalkit.figures.diagnosis.errors import ModeErrors
+from identification import cmif, pole_origins
 from modalkit.output.whole import plain
-from modalkit.report.charts.causes import causes_chart, closing_chart
-from modalkit.report.charts.gap import gap_chart, gap_title
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.place import place_chart
-from modalkit.report.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, poles_chart
-from modalkit.report.charts.thin import FEWEST, LARGEST, common_lines
 from modalkit.report.scripts import scripts
 from modalkit.views.chart import Chart, rounded
+from modalkit.views.charts.causes import causes_chart, closing_chart
+from modalkit.views.charts.gap import gap_chart, gap_title
+from modalkit.views.charts.matrix import matrix_chart
+from modalkit.views.charts.place import place_chart
+from modalkit.views.charts.poles import poles_chart
+from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart
+from modalkit.views.charts.thin import FEWEST, LARGEST, common_lines
+from modalkit.views.mode_errors import ModeErrors
 from modalkit.views.shapes import Beside, shapes_page
 from modalkit.workflow.case import open_study
 from updating.correlation.correlate import correlate
@@ -44,7 +45,7 @@ def errors(after: np.ndarray | None, doubt: np.ndarray | None, channel: str = "f
 
 def outside(chart: Chart, name: str) -> int:
     """Count the marks of a series that are drawn outside the widest band."""
-    band = next(one for one in chart.series if one.name == "tolerances and noise, 2σ")
+    band = next(one for one in chart.series if one.name == "tolerances, 2σ")
     dots = next(one for one in chart.series if one.name == name)
     low, high = (np.array(band.more[end], dtype=float) for end in ("low", "high"))
     values = np.array(dots.x, dtype=float)
@@ -162,8 +163,8 @@ def test_mac_cells_hold_the_matrix() -> None:
 
 
 def test_indicator_functions_are_those_of_the_room() -> None:
-    chart = cmif_chart(model_of(12).frfs)
-    assert chart is not None
+    frfs = model_of(12).frfs
+    chart = cmif_chart(frfs, cmif(frfs))
     assert chart.title.startswith(f"{len(chart.series)} mode indicator function")
 
 

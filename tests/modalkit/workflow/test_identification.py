@@ -23,7 +23,7 @@ from acquisition import (
     write_uff,
 )
 from acquisition.synthetic import HammerPlan, modal_system
-from modalkit.figures.test.hits import _gather
+from modalkit.figures.hits import _gather
 from modalkit.output.documents import modes_document
 from modalkit.workflow.files import read_files
 from modalkit.workflow.identification import read

@@ -9,7 +9,7 @@ import pytest
 from test_pairs_of_causes import FREE, two_sensors
 from updating_cases import case_of
 
-from modalkit.figures.diagnosis.fitted import fitted
+from modalkit.workflow.fitted import fitted
 from updating import LIBRARY, diagnose
 
 

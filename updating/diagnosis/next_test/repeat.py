@@ -6,9 +6,9 @@ from abc import abstractmethod
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
+from identification.pairing import counterparts
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
 from updating.effects.base import Effect
 from updating.likelihood.comparison import Comparison
@@ -140,10 +140,8 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
 
 def _of_structure(predictor: Predictor, prediction: Prediction, order: IntArray) -> IntArray:
     """Return which modes of a state that adds some are those of the structure without, by rank."""
-    before = predictor.predict(at_least=int(order.max()) + 1).vectors[:, order]
-    size = min(len(before), len(prediction.vectors))
-    alike = (before[:size].T @ prediction.vectors[:size]) ** 2
-    return np.asarray(linear_sum_assignment(-alike)[1])
+    before = predictor.predict(at_least=int(order.max()) + 1).select(order)
+    return counterparts(-before.overlap(prediction))
 
 
 def _relative(sigma: FloatArray, value: FloatArray) -> float:

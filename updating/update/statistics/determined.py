@@ -9,7 +9,7 @@ from scipy.stats import chi2 as chi2_distribution
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.update.data.system import Linear, System
-from updating.update.solve import NEGLIGIBLE
+from updating.update.gauss_newton import NEGLIGIBLE
 from updating.update.statistics.identifiability import Determinability, determinability
 from updating.update.statistics.leverage import leverage
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.update.data.system import Linear, System
-from updating.update.solve import NEGLIGIBLE
+from updating.update.gauss_newton import NEGLIGIBLE
 
 
 def leverage(system: System, linear: Linear) -> FloatArray:

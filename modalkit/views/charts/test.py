@@ -5,33 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import pandas as pd
 
 from acquisition import FrfSet, HitVerdict, InputError, ModalData
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import hertz, percent
 from identification import ModalModel, auto_mac, cmif
-from identification.pole_reasons import Origins
-from modalkit.figures.shapes.matrix import alike
-from modalkit.figures.test import stabilisation
-from modalkit.report.charts.matrix import matrix_chart
-from modalkit.report.charts.thin import common_lines
 from modalkit.views.chart import Axis, Chart, Choices, Series
-from modalkit.views.hits import frf_names
-
-KINDS = {
-    "new": ("cross", "faint", 2.6),
-    "short": ("dot", "faint", 2.6),
-    "outside": ("up", "muted", 3.0),
-    "pruned": ("square", "orange", 3.0),
-    "background": ("diamond", "orange", 3.0),
-    "dropped": ("cross", "red", 4.0),
-    "mode": ("dot", "blue", 2.6),
-}
-"""How poles are drawn by what became of them; the words are those of the figure."""
-
-ORIGINS = {"chain": ("down", "blue"), "refinement": ("diamond", "orange"), "named": ("square", "green")}
-"""How modes are drawn above the chart by where they come from."""
+from modalkit.views.charts.frf import Curve, frf_names, magnitude
+from modalkit.views.charts.frfs import ends
+from modalkit.views.charts.matrix import alike, matrix_chart
+from modalkit.views.charts.thin import common_lines
 
 
 def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
@@ -70,18 +55,15 @@ def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart
     left = np.sum(np.abs(frfs.values - fitted) ** 2, axis=1) / np.maximum(
         np.sum(np.abs(frfs.values) ** 2, axis=1), 1e-300
     )
-    worst = np.argsort(-left, kind="stable")[:count].tolist()
-    items = [
-        (
-            f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left",
-            [
-                Series("what the fit leaves", "line", None, size(frfs.values[i] - fitted[i], keep), "faint"),
-                Series("measured", "line", None, size(frfs.values[i], keep), "ink"),
-                Series("fit", "line", None, size(fitted[i], keep), "blue", {"dash": True}),
-            ],
-        )
-        for i in worst
-    ]
+    items = []
+    for i in np.argsort(-left, kind="stable")[:count].tolist():
+        curves = [
+            Curve("measured", "measured", frfs.frequency, frfs.values[i]),
+            Curve("remainder", "what the fit leaves", frfs.frequency, frfs.values[i] - fitted[i]),
+            Curve("fit", "fit", frfs.frequency, fitted[i]),
+        ]
+        name_of = f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left"
+        items.append((name_of, [magnitude(curve, keep) for curve in curves]))
     misfit = np.sqrt(np.sum(np.abs(frfs.values - fitted) ** 2) / np.sum(np.abs(frfs.values) ** 2))
     rest = f" {len(names) - count} better ones are not in this file." if count < len(names) else ""
     return Chart(
@@ -91,83 +73,39 @@ def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart
         Axis("frequency [Hz]", range=ends(frfs)),
         Axis(f"|H| [{frfs.unit}]", log=True),
         choices=Choices("FRF", items, frfs.frequency[keep]),
-        more={"lines": [float(f) for f in model.modal.frequency]},
+        more={"modes": [float(f) for f in model.modal.frequency]},
     )
 
 
-def size(values: ComplexArray, keep: IntArray) -> FloatArray:
-    """Return the magnitude on some lines, nan where it is 0."""
-    found = np.abs(values[keep])
-    return np.asarray(np.where(found > 0, found, np.nan))
-
-
-def ends(frfs: FrfSet) -> tuple[float, float]:
-    """Return the ends of the axis [Hz]."""
-    return float(frfs.frequency[0]), float(frfs.frequency[-1])
-
-
-def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Chart:
-    """Return every pole of every order with what became of it, and above them every mode with where it comes from."""
-    chart = model.chart
-    low, high = model.band
-    edge = 0.02 * (high - low)
-    near = (chart.frequency >= low - edge) & (chart.frequency <= high + edge)
-    order = chart.orders[chart.level]
-    kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
-    keep, _ = common_lines(model.frfs, 60)
-    total = size(np.abs(model.frfs.values).sum(axis=0), keep)
-    series = [Series("sum of the FRFs", "line", model.frfs.frequency[keep], total, "faint", {"right": True})]
-    for which, (symbol, colour, radius) in KINDS.items():
-        rows = np.flatnonzero(near & (kind == which))
-        text = [
-            f"{chart.frequency[i]:.3f} Hz, damping {100 * chart.damping[i]:.3f} %, order {order[i]}\n"
-            f"{origins.reasons[origins.chain[i]].text}"
-            for i in rows
-        ]
-        more = {"text": text, "symbol": symbol, "size": radius}
-        if len(rows):
-            series.append(
-                Series(
-                    stabilisation.KINDS[which][0], "points", chart.frequency[rows], order[rows], colour, more
-                )
-            )
-    top = 1.06 * float(chart.orders.max())
-    for which, (symbol, colour) in ORIGINS.items():
-        modes = [r for r, origin in enumerate(origins.modes) if origin == which]
-        hz = [float(model.modal.frequency[r]) for r in modes]
-        meaning = stabilisation.ORIGINS[which][0]
-        text = [f"mode {r + 1}: {model.modal.frequency[r]:.3f} Hz\n{meaning}" for r in modes]
-        more = {"text": text, "symbol": symbol, "size": 5}
-        if modes:
-            series.append(Series(meaning, "points", hz, [top] * len(hz), colour, more))
-    return Chart(
-        name,
-        stabilisation.poles_title(origins, int(np.sum(near))),
-        "Every pole of every order by what became of it; modes stand above, dotted below.",
-        Axis("frequency [Hz]", range=(low - edge, high + edge)),
-        Axis("model order", range=(0.0, 1.04 * top)),
-        series,
-        360.0,
-        more={"lines": [float(f) for f in model.modal.frequency]},
-    )
-
-
-def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
-    """Return the complex mode indicator functions; None where no response was measured with every reference."""
+def thin_cmif(frfs: FrfSet) -> pd.DataFrame | None:
+    """Return the mode indicator functions on common lines; None where no response was measured with every reference."""
     try:
         table = cmif(frfs)
     except InputError:
         return None
+    return table.iloc[common_lines(frfs, 40)[0]]
+
+
+def cmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "cmif") -> Chart:
+    """Return the complex mode indicator functions of FRFs.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    table : pandas.DataFrame
+        As of :func:`identification.cmif`.
+    name : str
+        Of the chart.
+    """
     table = table[table.index > 0]
-    keep, _ = common_lines(frfs, 40)
-    keep = keep[keep < len(table)]
     shades = ("ink", "orange", "blue", "muted")
     series = [
         Series(
             f"CMIF {k}",
             "line",
-            table.index[keep].to_numpy(float),
-            _positive(table[k].to_numpy(float)[keep]),
+            table.index.to_numpy(float),
+            _positive(table[k].to_numpy(float)),
             colour,
         )
         for k, colour in zip(table.columns, shades, strict=False)
@@ -183,7 +121,7 @@ def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
         name,
         f"{counted(count, 'mode indicator function')} of {counted(len(frfs.responses), 'FRF')}",
         what + (f" Left out, as FRFs lack: {', '.join(left)}." if left else ""),
-        Axis("frequency [Hz]", range=ends(frfs)),
+        Axis("frequency [Hz]", range=(float(table.index[0]), float(table.index[-1]))),
         Axis(f"CMIF [({frfs.unit})²]", log=True),
         series,
         240.0,

@@ -12,6 +12,9 @@ from modalkit.views.chart import Axis, Chart, Series
 WIDEST = 68
 """Width of a cell at the most: a matrix of three modes is not to fill the page [px]."""
 
+CONFUSED = 0.3
+"""From this MAC on two modes are reported as similar."""
+
 
 def matrix_chart(
     name: str,
@@ -73,3 +76,19 @@ def _hundredths(value: float) -> str:
     if not np.isfinite(value) or abs(value) < 0.005:
         return ""
     return f"{100 * value:.0f}".replace("-", "−")
+
+
+def alike(matrix: FloatArray) -> str:
+    """State which modes look most alike."""
+    if len(matrix) < 2:
+        return "One mode"
+    if not np.isfinite(matrix).all():
+        return "One degree of freedom: there is no shape to compare"
+    apart = matrix - np.eye(len(matrix))
+    i, j = np.unravel_index(int(apart.argmax()), apart.shape)
+    first, second = sorted((int(i) + 1, int(j) + 1))
+    if apart[i, j] < 0.1:
+        return "All modes are distinct"
+    if apart[i, j] < CONFUSED:
+        return f"All modes differ; {first} and {second} are the most alike, by {100 * apart[i, j]:.0f} %"
+    return f"Modes {first} and {second} look alike by {100 * apart[i, j]:.0f} %"

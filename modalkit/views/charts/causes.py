@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from acquisition.display import counted
 from acquisition.quantities import bare_p, probability
-from modalkit.figures.diagnosis.causes import explanations
-from modalkit.figures.diagnosis.held_out import rivals
-from modalkit.figures.words import METRICS, short
+from modalkit.output.words import METRICS, parameters, short
 from modalkit.views.chart import Axis, Chart, Series
 from updating import Diagnosis
 
@@ -15,6 +15,43 @@ ROWS = 10
 
 LEAST = 1e-4
 """What is less is drawn as that, on a logarithmic axis [%]."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """One row of the causes: its name, its parameters in words, its probability, and whether it is the answer."""
+
+    label: str
+    detail: str
+    probability: float
+    answer: bool
+
+
+def explanations(diagnosis: Diagnosis) -> list[Explanation]:
+    """Return the rows: those of the answer, then the rest by probability, with the tolerances among them."""
+    chosen = set(diagnosis.sets)
+    none = diagnosis.verdict == "none"
+    alone = max(0.0, 1.0 - sum(row.probability for row in diagnosis.ranking))
+    rows = [Explanation("tolerances and noise alone", "", alone, none)]
+    for row in diagnosis.ranking:
+        detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
+        if row.p_value < diagnosis.rules.rejected_fit and not none:
+            detail = "does not fit"
+        rows.append(Explanation(short(row.effects), detail, row.probability, row.effects in chosen))
+    return sorted(rows, key=lambda row: (not row.answer, -row.probability))
+
+
+def rivals(diagnosis: Diagnosis) -> list[tuple[str, float, bool]]:
+    """Return (name, gap on held-out modes [%], whether it is the best explanation) from worst to best known."""
+    shrink, ranking = diagnosis.shrink, diagnosis.ranking
+    rows = [("the unchanged model", shrink.held_before, False)]
+    rows.append(("tolerances alone", shrink.held_nuisance, False))
+    if shrink.held_runner_up is not None:
+        name = short(ranking[1].effects) if len(ranking) > 1 else "the runner-up"
+        rows.append((f"runner-up: {name}", shrink.held_runner_up, False))
+    if ranking:
+        rows.append((short(ranking[0].effects), shrink.held_after, diagnosis.verdict != "none"))
+    return rows
 
 
 def causes_chart(diagnosis: Diagnosis) -> Chart:
@@ -80,7 +117,7 @@ def closing_chart(diagnosis: Diagnosis) -> Chart:
     low = min([*held, floor, max(shrink.after, LEAST) / whole]) / 2
     series = [
         Series(
-            "noise of the test", "bands", [], list(range(len(rows))), "band",
+            f"noise of the test, {shrink.size(shrink.floor)}", "bands", [], list(range(len(rows))), "band",
             {"low": [low] * len(rows), "high": [floor] * len(rows)},
         ),
         Series("on modes held out", "points", held, known, "blue", {"text": text, "size": 6}),
@@ -99,11 +136,22 @@ def closing_chart(diagnosis: Diagnosis) -> Chart:
     return Chart(
         "closing",
         _closes(diagnosis),
-        "Each mode predicted from all others (dots), and on the data that were fitted (ring). The band is noise.",
+        "Each mode predicted from all others (dots), and on the data that were fitted (ring). The band is noise."
+        + _by_tolerances(diagnosis),
         Axis(f"{METRICS[shrink.metric]} gap, r.m.s. [{unit}]", log=True),
         Axis(names=tuple(name for name, _, _ in rows)),
         series,
-        more={"row": 34},
+        more={"row": 34, "notes": [shrink.size(size) for _, size, _ in rows]},
+    )
+
+
+def _by_tolerances(diagnosis: Diagnosis) -> str:
+    shrink = diagnosis.shrink
+    if diagnosis.verdict == "none" or not shrink.held_nuisance <= 1.25 * shrink.held_after:
+        return ""
+    return (
+        " The tolerances alone would close the gap in this kind of data as far: the cause is identified by the other "
+        "data."
     )
 
 

@@ -9,9 +9,10 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import percent, sigmas
-from modalkit.figures.diagnosis.errors import ModeErrors
-from modalkit.figures.words import METRICS
+from modalkit.output.words import METRICS
 from modalkit.views.chart import Axis, Chart, Series
+from modalkit.views.mode_errors import ModeErrors
+from updating import Diagnosis
 
 
 def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") -> Chart:
@@ -28,7 +29,7 @@ def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") ->
     """
     rows = np.arange(len(errors.frequency))
     series = [
-        _band("tolerances and noise, 2σ", rows, errors.doubt, "pale", signed=errors.signed),
+        _band("tolerances, 2σ", rows, errors.doubt, "pale", signed=errors.signed),
         _band("noise, 2σ", rows, errors.floor, "band", signed=errors.signed),
     ]
     if errors.after is not None:
@@ -114,3 +115,8 @@ def _bands(errors: ModeErrors, i: int) -> list[str]:
     """Return the widths of the bands of a mode in words."""
     known = [("noise", errors.floor), ("noise and tolerances", errors.doubt)]
     return [f"{name} 2σ: ±{band[i]:.3f} %" for name, band in known if band is not None]
+
+
+def after_words(diagnosis: Diagnosis) -> str:
+    """State what the dots of a diagnosis are."""
+    return "with the best-fitting (rejected) explanation" if diagnosis.verdict == "unknown" else "after"

@@ -1,4 +1,4 @@
-"""The figures of a diagnosis: one list for the report and for ``--figures``."""
+"""The figures of a diagnosis: what ``--figures`` writes."""
 
 from __future__ import annotations
 
@@ -7,17 +7,14 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from modalkit.figures import diagnosis_figure, frf_figure, localisation_figure
-from modalkit.figures.diagnosis import (
-    Fitted,
-    fitted,
-    gap_figure,
-    mode_errors,
-    overlaid,
-    overlaid_figure,
-    shrink_figure,
-)
+from modalkit.figures.charts import frf_figure, gap_figure, overlaid_figure, shrink_figure
+from modalkit.figures.diagnosis.figure import diagnosis_figure
+from modalkit.figures.diagnosis.localisation import localisation_figure
+from modalkit.views.charts.gap import after_words
+from modalkit.views.mode_errors import mode_errors
 from modalkit.workflow.case import Session
+from modalkit.workflow.fitted import Fitted, fitted
+from modalkit.workflow.overlaid import overlaid
 from updating import Diagnosis
 
 
@@ -89,7 +86,7 @@ def _own(diagnosis: Diagnosis, session: Session, best: Fitted, several: bool) ->
     bands = "" if errors.floor is None else ", with the bands that noise, and noise with the tolerances, fill"
     found = {
         "gap": Drawing(
-            gap_figure(diagnosis, errors, title=title if several else ""),
+            gap_figure(errors, after=after_words(diagnosis), title=title if several else ""),
             f"{name}{shown}{bands}.",
         )
     }

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from acquisition import FrfSet
-from acquisition.arrays import IntArray
+from acquisition.arrays import AnyArray, IntArray
 
 BUDGET = 60_000
 """Numbers that the FRFs of a test may take, half a megabyte; doubled, a large test is hard to mail [-]."""
@@ -38,11 +38,15 @@ def common_lines(frfs: FrfSet, curves: int, *, tests: int = 1) -> tuple[IntArray
     """
     count = min(len(frfs.responses), max(1, LARGEST // tests))
     wanted = int(np.clip(BUDGET / (tests * curves * count), FEWEST, MOST))
-    lines = len(frfs.frequency)
-    if lines <= wanted:
-        return np.arange(lines), count
-    total = np.abs(frfs.values).sum(axis=0)
-    cuts = np.linspace(0, lines, wanted // 2 + 1).astype(int)
+    return extremes(np.abs(frfs.values).sum(axis=0), wanted), count
+
+
+def extremes(values: AnyArray, most: int) -> IntArray:
+    """Return where a curve is highest and lowest in every piece of it, and its ends: some ``most`` places."""
+    lines = len(values)
+    if lines <= most:
+        return np.arange(lines)
+    cuts = np.linspace(0, lines, most // 2 + 1).astype(int)
     pieces = [np.arange(a, b) for a, b in pairwise(cuts.tolist())]
-    keep = {int(p[pick(total[p])]) for p in pieces for pick in (np.argmin, np.argmax)}
-    return np.array(sorted(keep | {0, lines - 1}), dtype=np.int64), count
+    keep = {int(p[pick(values[p])]) for p in pieces for pick in (np.argmin, np.argmax)}
+    return np.array(sorted(keep | {0, lines - 1}), dtype=np.int64)

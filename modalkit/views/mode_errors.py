@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.quantities import hertz
-from modalkit.figures.diagnosis.fitted import Fitted, fitted
+from modalkit.workflow.fitted import Fitted, fitted
 from updating import Case, Diagnosis
 from updating.diagnosis.answer.metric import noise_squares, squares
 from updating.likelihood.comparison import Comparison

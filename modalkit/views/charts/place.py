@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.quantities import probability
-from modalkit.figures.diagnosis.localisation import localisation_title
-from modalkit.figures.diagnosis.where import Outline, outline
+from modalkit.output.location import localisation_title
 from modalkit.views.chart import Axis, Chart, Series
+from modalkit.views.outline import Outline, outline
 from updating import Case, Diagnosis
 
 

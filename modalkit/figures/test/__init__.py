@@ -1,1 +1,0 @@
-"""Figures of a test: hits, FRFs, stabilisation chart, CMIF."""
