@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from html import escape
+from itertools import pairwise
 from numbers import Number
 from typing import TYPE_CHECKING, Any
 
 from acquisition.errors import InputError
+from acquisition.quantities import decimals
 from acquisition.warned import in_order
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ ITEMS = 4
 LONGEST = 400
 """Characters of the line that describes a result."""
 
-_FACE: list[str] = []  # the module that draws, none before modalkit is imported
+_FACE: list[str] = []  # the modules that draw and that answer, none before modalkit is imported
 
 
 class Displayed:
@@ -52,20 +54,29 @@ class Displayed:
         table = getattr(self, "table", None)
         return table() if callable(table) else table
 
+    def _answer(self) -> Mapping[str, str]:
+        """Return what this answers, question by question; nothing for what is no answer."""
+        return {}
+
     def __repr__(self) -> str:
-        """Return one line, how many warnings there are with the first of them, and the table below."""
+        """Return one line, how many warnings there are with the first of them, and the answer or the table below."""
         line, rows = f"{type(self).__name__}: {_cut(self._headline(), LONGEST)}", self._frame()
         line += _warned(getattr(self, "warnings", ()))
+        if answer := self._answer():
+            return "\n".join([line, *(f"{f'{name}:':<9}{text}" for name, text in answer.items())])
         if rows is None or not len(rows):
             return line
-        return f"{line}\n{rows.to_string(max_rows=LINES, max_colwidth=WIDTH, float_format=_number)}"
+        own = formats(rows)
+        return f"{line}\n{rows.to_string(max_rows=LINES, max_colwidth=WIDTH, float_format=_number, formatters=own)}"
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows: the line, the table, and the warnings."""
+        """Return what a notebook shows: the line, the answer, the table, and the warnings."""
         line = f"<p><b>{type(self).__name__}</b>: {escape(_cut(self._headline(), LONGEST))}</p>"
         rows = self._frame()
         table = "" if rows is None or not len(rows) else _html(rows)
-        return f"<div>{line}{table}{_warnings(getattr(self, 'warnings', ()))}</div>"
+        lines = "".join(f"<dt><b>{escape(k)}</b></dt><dd>{escape(v)}</dd>" for k, v in self._answer().items())
+        answer = f"<dl>{lines}</dl>" if lines else ""
+        return f"<div>{line}{answer}{table}{_warnings(getattr(self, 'warnings', ()))}</div>"
 
 
 class Shown(Displayed):
@@ -106,15 +117,21 @@ class Animated(Displayed):
         return _face().animate(self, session)
 
 
-def draw_by(module: str) -> None:
-    """Name the module that draws results; it is loaded once something is drawn."""
-    _FACE[:] = [module]
+def draw_by(module: str, answers: str) -> None:
+    """Name the modules that draw results and that put them in words; each is loaded once it is needed."""
+    _FACE[:] = [module, answers]
 
 
 def _face() -> Any:
     if not _FACE:
         raise InputError("results are drawn by modalkit; import modalkit first")
     return importlib.import_module(_FACE[0])
+
+
+def answers_of(result: Any) -> Mapping[str, str]:
+    """Return what a result answers, as the face words it; nothing before it is there."""
+    found: Mapping[str, str] = importlib.import_module(_FACE[1]).answers(result) if _FACE else {}
+    return found
 
 
 def described(result: Any) -> str:
@@ -185,12 +202,36 @@ def _html(rows: pd.DataFrame) -> str:
     index = name is not None or rows.index.dtype.kind not in "iu"
     shown = rows.set_axis(rows.index.rename(None), axis=0)
     shown.columns = shown.columns.rename(name)  # beside the headings, not in a row of its own
-    table: str = shown.to_html(max_rows=ROWS, float_format=_number, border=0, justify="left", index=index)
+    options: dict[str, Any] = {"float_format": _number, "formatters": formats(shown)}
+    table: str = shown.to_html(max_rows=ROWS, border=0, justify="left", index=index, **options)
     return table.replace("<table ", '<table cellpadding="4" ', 1)
 
 
 def _number(value: float) -> str:
     return f"{value:.6g}"
+
+
+def formats(rows: pd.DataFrame) -> dict[str, Callable[[float], str]]:
+    """Return how the columns of a table are written that have a standard deviation beside them, and these.
+
+    Such a column is followed by one whose name begins with ``sigma``, in the same unit. All its values have as many
+    decimals as the best known of them.
+    """
+    found: dict[str, Callable[[float], str]] = {}
+    names = [str(name) for name in rows.columns]
+    for value, sigma in pairwise(names):
+        if not sigma.startswith("sigma") or value.rpartition("[")[2] != sigma.rpartition("[")[2]:
+            continue
+        known = [d for s in rows[sigma] if (d := decimals(float(s))) is not None]
+        if known:
+            found[value] = f"{{:.{max(known)}f}}".format
+            found[sigma] = _short
+    return found
+
+
+def _short(value: float) -> str:
+    """Return a standard deviation with two digits."""
+    return f"{value:.2g}"
 
 
 def _warned(warnings: Sequence[str]) -> str:

@@ -15,3 +15,9 @@ class StudyError(ModalkitError):
 
 class EstimationError(ModalkitError):
     """The data do not carry what was asked of them."""
+
+
+def cannot_open(path: object, error: Exception) -> InputError:
+    """Return the error of a file that the system does not open, with the reason that it gives."""
+    reason = getattr(error, "strerror", None) or error
+    return InputError(f"{path}: cannot be opened ({reason}); check the path")

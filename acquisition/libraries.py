@@ -9,8 +9,8 @@ from typing import Any
 from acquisition.errors import InputError
 
 
-def library(module: str, path: Path, *, extra: str) -> Any:
-    """Return a module of a library that reads a file.
+def library(module: str, path: Path, *, extra: str, does: str = "read") -> Any:
+    """Return a module of a library that reads or writes a file.
 
     Parameters
     ----------
@@ -20,6 +20,8 @@ def library(module: str, path: Path, *, extra: str) -> Any:
         The file, for messages.
     extra : str
         Which extra of modalkit-ema installs it.
+    does : str
+        What the library does with the file: "read" or "written".
 
     Raises
     ------
@@ -30,6 +32,6 @@ def library(module: str, path: Path, *, extra: str) -> Any:
         return importlib.import_module(module)
     except ImportError as error:
         raise InputError(
-            f"{path}: {path.suffix} files are read by {module.partition('.')[0]}, which is not installed; "
+            f"{path}: {path.suffix} files are {does} by {module.partition('.')[0]}, which is not installed; "
             f"install modalkit-ema[{extra}]"
         ) from error

@@ -54,6 +54,18 @@ def number(value: float) -> str:
     return f"{value:.2e}" if short and not 1e-3 <= abs(short) < 1e6 else f"{short:.10g}"
 
 
+def decimals(sigma: float) -> int | None:
+    """Return how many decimals of a value its standard deviation determines; None where it determines none.
+
+    The last decimal is that of the first digit of sigma, or of the second where the first is 1 or 2: rounding moves the
+    value by a fifth of sigma at most.
+    """
+    if not math.isfinite(sigma) or sigma <= 0:
+        return None
+    mantissa, exponent = f"{sigma:.1e}".split("e")
+    return max(-int(exponent) + (float(mantissa) < 3.0), 0)
+
+
 def quantity(value: float, unit: str = "-") -> str:
     """Return a value [unit] in the unit that suits it: ``12.5 g``."""
     factor, handy = _handy(unit, value)

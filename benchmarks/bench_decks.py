@@ -53,7 +53,7 @@ def measure(n: int) -> dict[str, float]:
     from updating.models.decks import imported as made_of
     from updating.models.decks import read_deck_model
     from updating.models.parts import Region
-    from updating.models.reduced import reduce_structure
+    from updating.models.reduction import reduce_structure
     from updating.models.state import State
 
     found: dict[str, float] = {}

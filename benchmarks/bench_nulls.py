@@ -59,7 +59,7 @@ def of_trial(seed: int, index: int, plan: DrawRanges) -> tuple[str, Found, float
     for name in ("all", *CHANNELS):
         keep = point.comparison.stated & ((name == "all") | point.comparison.of(name))
         if keep.any():
-            found[name] = float(gaussian(point.comparison, (1.0,), keep).chi2[0, 0]), int(keep.sum())
+            found[name] = float(gaussian(point.comparison, (1.0,), keep).fit.chi2[0, 0, 0]), int(keep.sum())
     kind = f"{trial.truth.kind}, baseline" if trial.truth.baseline else trial.truth.kind
     return kind, found, p_value(point)
 

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from identification.pole_reasons import Origins, PoleReason, pole_origins
     from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
     from identification.poles.cmif import cmif
+    from identification.poles.mvmif import mvmif
     from identification.poles.stabilisation import StabilisationChart, stabilise
     from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
     from identification.sdypy_bridge import beside, from_sdypy, second_opinion, to_sdypy
@@ -95,6 +96,7 @@ __all__ = [
     "modes_table",
     "mpc",
     "msf",
+    "mvmif",
     "pair",
     "pole_origins",
     "prepare",
@@ -112,6 +114,7 @@ load_on_demand(
     __name__,
     {
         ".poles.cmif": "cmif",
+        ".poles.mvmif": "mvmif",
         ".band.health": "frf_health mode_coherence",
         ".identify": "Prepared identify prepare",
         ".band.informed": "at_cut_edge informed_band",

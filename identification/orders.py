@@ -93,7 +93,7 @@ def order_list(frfs: FrfSet, order: int, *, poly_reference: bool) -> list[int]:
     if order < 2:
         raise InputError(f"order {order} leaves no room for a mode; use 2 or more")
     if order > _HIGHEST:
-        raise InputError(f"order {order} is beyond {_HIGHEST}; rather cut the band into pieces")
+        raise InputError(f"order {order} is beyond {_HIGHEST}; divide the band instead")
     carried = max(2, len(frfs.frequency) // 2)
     top = min(max(order // columns, min(order, 16)), carried)
     bottom = max(1, min(top - 1, max(top // 6, 2)))

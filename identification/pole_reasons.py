@@ -107,9 +107,9 @@ def _reason(
     """Return what became of a chain with this pole in its middle."""
     orders = len(model.chart.orders)
     if length == 1:
-        return PoleReason("new", "continues no pole of the order below, and none of the next continues it")
+        return PoleReason("new", "no pole of the next lower or next higher order matches it")
     if length < least:
-        text = f"holds through {length} of {orders} orders only; a candidate holds through {least}"
+        text = f"holds through {length} of {orders} orders only; a candidate needs {least}"
         return PoleReason("short", text)
     if chain in became:
         mode = became[chain]

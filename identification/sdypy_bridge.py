@@ -174,7 +174,7 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     table = pd.DataFrame({"frequency [Hz]": frequency[keep], "damping [%]": damping[keep]})
     table = table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
     fewer = (
-        f"sdypy-EMA is run up to order {2 * pairs}, not {order}: {len(data.frequency)} lines carry no more",
+        f"sdypy-EMA is run up to order {2 * pairs}, not {order}: {len(data.frequency)} lines allow no more",
     )
     table.attrs["warnings"] = (*opinion_warnings(frfs, band), *(fewer if pairs < order // 2 else ()))
     return table
@@ -227,11 +227,11 @@ def opinion_warnings(frfs: FrfSet, band: tuple[float, float]) -> tuple[str, ...]
     stated = []
     if lower > 0.2 * upper:
         stated.append(
-            f"sdypy-EMA sees nothing under {lower:g} Hz here, more than a fifth of {upper:g} Hz: there it loses and "
-            "shifts modes; give it FRFs from lower frequencies on"
+            f"the FRFs begin at {lower:g} Hz, more than a fifth of {upper:g} Hz: with such FRFs sdypy-EMA loses and "
+            "shifts modes; give it FRFs from lower frequencies"
         )
     if lower <= 0:
-        stated.append("sdypy-EMA is given the line at 0 Hz: there it loses modes; start above 0 Hz")
+        stated.append("with the line at 0 Hz sdypy-EMA loses modes; start above 0 Hz")
     return tuple(stated)
 
 

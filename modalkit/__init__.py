@@ -32,7 +32,7 @@ from acquisition.display import draw_by  # noqa: E402
 from acquisition.lazy import load_on_demand  # noqa: E402
 from modalkit.version import __version__  # noqa: E402
 
-draw_by("modalkit.notebook")
+draw_by("modalkit.notebook", answers="modalkit.output.summary")
 
 if TYPE_CHECKING:
     from acquisition import (
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
         split_hits,
         write_uff,
     )
-    from identification import ModalModel, cmif, identify
+    from identification import ModalModel, cmif, identify, mvmif
     from modalkit import figures
     from modalkit.figures import draw
     from modalkit.output.modes import write_modes
@@ -65,8 +65,9 @@ if TYPE_CHECKING:
     from modalkit.workflow.comparison import compare, mac, modes_of
     from modalkit.workflow.diagnosis import diagnose_studies
     from modalkit.workflow.existing import Modes
-    from modalkit.workflow.identification import Processed, read
+    from modalkit.workflow.identification import read
     from modalkit.workflow.localisation import localise_study
+    from modalkit.workflow.processed import Processed
     from modalkit.workflow.processing_options import ProcessingOptions
     from modalkit.workflow.update import update_studies
     from updating import Case, DecisionRules, Diagnosis, diagnose, register
@@ -107,6 +108,7 @@ __all__ = [
     "localise_study",
     "mac",
     "modes_of",
+    "mvmif",
     "open_study",
     "read",
     "read_study",
@@ -130,7 +132,7 @@ load_on_demand(
             "estimate_frfs hits_table judge_hits read_uff reciprocity remove_sensor_mass split_hits "
             "write_uff"
         ),
-        "identification": "ModalModel cmif identify",
+        "identification": "ModalModel cmif identify mvmif",
         "modalkit": "figures",
         ".workflow.comparison": "compare mac modes_of",
         ".workflow.diagnosis": "diagnose_studies",
@@ -140,7 +142,8 @@ load_on_demand(
         ".workflow.update": "update_studies",
         ".workflow.processing_options": "ProcessingOptions",
         ".workflow.case": "Session open_study",
-        ".workflow.identification": "Processed read",
+        ".workflow.identification": "read",
+        ".workflow.processed": "Processed",
         ".output.modes": "write_modes",
         ".samples": "sample_file",
         ".simulation.simulate": "simulate_test",

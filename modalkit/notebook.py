@@ -15,7 +15,8 @@ from modalkit.output.words import answer
 from modalkit.report.diagnosis import answer_sections
 from modalkit.report.document import Document, Section
 from modalkit.report.html import Raw, element, joined
-from modalkit.report.identification import modes_answer, modes_table
+from modalkit.report.identification import modes_answer
+from modalkit.report.modes import modes_table
 from modalkit.report.page import page
 from modalkit.report.place import write_report
 from modalkit.report.sections import the_summary
@@ -23,7 +24,7 @@ from modalkit.report.tested import sections_of_test, shapes_section
 from modalkit.report.updating import update_answer, update_sections
 from modalkit.workflow.case import Session
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
 from updating import Diagnosis
 from updating.update import Update
 
@@ -37,14 +38,21 @@ class Drawn:
 
     Parameters
     ----------
-    page : str
-        The text of an HTML file that needs nothing else.
-    title : str
+    document : Document
         What it shows.
     """
 
-    page: str
-    title: str
+    document: Document
+
+    @property
+    def page(self) -> str:
+        """The text of an HTML file that needs nothing else."""
+        return page(self.document)
+
+    @property
+    def title(self) -> str:
+        """What it shows."""
+        return self.document.title
 
     def _repr_html_(self) -> str:
         """Return the page in a frame that can ask for nothing and changes nothing around it."""
@@ -58,14 +66,14 @@ class Drawn:
         return f"Drawn: {self.title}; a notebook shows it, save(path) writes it"
 
     def save(self, path: Path | str) -> None:
-        """Write the page to a file that opens in any browser.
+        """Write the page to a file that opens in any browser, or to one for Word where it ends in .docx.
 
         Raises
         ------
         InputError
             If it cannot be written, or something else than a report stands there.
         """
-        write_report(Path(path), self.page)
+        write_report(Path(path), self.document)
 
 
 def show(result: Any, *sessions: Session) -> Drawn:
@@ -85,7 +93,7 @@ def show(result: Any, *sessions: Session) -> Drawn:
     """
     title, head, sections = _parts(result, sessions)
     whole = joined(element("h1", title), head)
-    return Drawn(page(Document(title, type(result).__name__, whole, sections)), title)
+    return Drawn(Document(title, type(result).__name__, whole, sections))
 
 
 def animate(modes: Any, session: Session | None = None) -> Drawn:
@@ -113,7 +121,7 @@ def animate(modes: Any, session: Session | None = None) -> Drawn:
     if not section.shown:
         raise InputError("these modes have no shapes to move; identify them from FRFs at several points")
     title = "Mode shapes" if session is None else session.case.title
-    return Drawn(page(Document(title, "shapes", element("h1", title), [section])), title)
+    return Drawn(Document(title, "shapes", element("h1", title), [section]))
 
 
 Parts = tuple[str, Raw, Sequence[Section]]
@@ -138,13 +146,13 @@ def _of_update(result: Update, sessions: Sequence[Session]) -> Parts:
 
 @_parts.register
 def _of_model(result: ModalModel, sessions: Sequence[Session]) -> Parts:
-    modes = Section("Modes", [modes_table(result)])
+    modes = Section("Modes", [modes_table(result.modal)])
     return "Modes", modes_answer(None, result), [modes, *sections_of_test(None, result, result.modal)]
 
 
 @_parts.register
 def _of_modes(result: Modes, sessions: Sequence[Session]) -> Parts:
-    modes = Section("Modes", [modes_table(result)])
+    modes = Section("Modes", [modes_table(result.modal)])
     return (
         result.title or "Modes",
         modes_answer(None, result),

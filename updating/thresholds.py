@@ -72,9 +72,10 @@ LEAST_CONSTANT_NOISE = 0.005
 Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. It is the
 most that a single constant may be off, see ``UNSEEN_SHARES``. Doubled: good shapes count a quarter as much."""
 
-UNSEEN_SHARES = (1.0, 0.2)
+UNSEEN_SHARES = (1.0, 0.3, 0.1, 0.03)
 """Sizes of that error of a constant, as shares, each as likely [-]: where motion is all along the transducers there is
-next to none of it. Doubled: the largest, and shapes decide less where structures do move across."""
+next to none of it, and shapes are many data, which show it. Doubled: the largest, and shapes decide less where
+structures do move across."""
 
 LEAST_TURN = 0.005
 """Shapes of close modes are held to turn into each other where their frequencies' scatter makes it so much [rad]: less
@@ -88,7 +89,9 @@ FREE_LEVEL_DOUBT = 3.0
 """Doubt in the level of a mode of which the shape alone is known (1 sigma, relative) [-]: no level is believed."""
 
 SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
-"""How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
+"""How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape. Not below 1:
+beside a baseline that the model misses, much of that noise is what this leaves of the shapes, which is alike from point
+to point, and a second cause that takes it up would be paid for each of them."""
 
 REPEATED_SCATTER_PRIOR = (0.85, 0.12, 0.025, 0.004, 0.001)
 """Prior of each of these where repeated hits show the scatter [-]. Judged: some one in seven stated scatters is too
@@ -101,7 +104,8 @@ DOUBT_SHARES = (1.0, 0.3, 0.1)
 """Sizes of a doubt of which the most is judged, as shares of that, each as likely [-]: of an effect's idealisation,
 whose ``fidelity`` is what it may be off where the structure is none of those it was made for; of the scatter of damping
 from mounting to mounting; of phases; of a frequency's dependence on the level. Roots of ten, so that no size between
-is far from one. Doubled: the largest, and an effect may leave twice as much."""
+is far from one; not below a tenth, since a few data that a cause fits by chance would count for more than they show.
+Doubled: the largest, and an effect may leave twice as much."""
 
 END_REACH = 0.01
 """Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing

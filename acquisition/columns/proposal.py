@@ -42,21 +42,33 @@ _ABOVE = 6
 
 
 @dataclass(frozen=True, eq=False)
-class _Source:
-    """The first record of the files, and how its channels are called in a layout."""
+class Source:
+    """The first record of the files, and how its channels are called in a layout.
+
+    Parameters
+    ----------
+    record : Channels
+        The record.
+    channels : tuple of Channel
+        Those of its channels that hold numbers.
+    named : bool
+        Whether a layout calls them by their headings; otherwise by their numbers.
+    """
 
     record: Channels
     channels: tuple[Channel, ...]
     named: bool
 
 
-def propose_layout(paths: Sequence[str | Path]) -> str:
+def propose_layout(paths: Sequence[str | Path], *, text: Layout | None = None) -> str:
     """Return a layout for files as TOML, with comments that say what was guessed and why.
 
     Parameters
     ----------
     paths : sequence of str or Path
         Files of one test: column text, LabVIEW text, or files of recorders.
+    text : Layout, optional
+        Separator, decimal sign and lines to skip, where they are known already.
 
     Raises
     ------
@@ -71,32 +83,58 @@ def propose_layout(paths: Sequence[str | Path]) -> str:
     found = frf_array(arrays(files[0])) if files[0].suffix.lower() == ".mat" else None
     if found is not None:
         return "\n".join([*head, *of_mat(found)]) + "\n"
-    source = _source(files[0])
+    text = Layout(columns=()) if text is None else text
+    source = source_of(files[0], text)
     if len(source.channels) < 2:
         raise InputError(
             f"{files[0]}: holds {len(source.channels)} channels; a hit has a force and a response"
         )
     lines = lines_among(source.channels)
     body = _of_hits(source, files) if lines is None else _of_frfs(source, lines, files)
-    return "\n".join([*head, *body]) + "\n"
+    return "\n".join([*head, *_style(text), *body]) + "\n"
 
 
-def _source(path: Path) -> _Source:
+def _style(text: Layout) -> list[str]:
+    """Return what is stated about how numbers are written, where it is not found out."""
+    usual = Layout(columns=())
+    stated = {key: getattr(text, key) for key in ("separator", "decimal", "skip")}
+    return [
+        f"{key} = {value if isinstance(value, int) else text_of(value)}"
+        for key, value in stated.items()
+        if value != getattr(usual, key)
+    ]
+
+
+def source_of(path: Path, text: Layout) -> Source:
+    """Return the first record of a file with its channels.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    text : Layout
+        What is stated about separator, decimal sign and lines to skip.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
     if is_recorded(path):
         record = listed(path)[0]
-        return _Source(record, _channels(record, record.units), named=path.suffix.lower() in ARRAYS)
-    text = read_text(path)
-    if is_lvm(text):
-        record = lvm_blocks(path, text)[0]
-        return _Source(record, _channels(record, record.units), named=True)
-    block = plain_blocks(path, text, Layout(columns=()), 2)[0]
-    names, units = _headings(text, block)
+        return Source(record, _channels(record, record.units), named=path.suffix.lower() in ARRAYS)
+    rows = read_text(path)
+    if is_lvm(rows):
+        record = lvm_blocks(path, rows)[0]
+        return Source(record, _channels(record, record.units), named=True)
+    block = plain_blocks(path, rows, text, 2)[0]
+    names, units = _headings(rows, block)
     unique = len(set(names)) == len(names) and all(names)
     channels = tuple(
         Channel(i, name, unit_in(name) or unit, False, _column(block, i))
         for i, (name, unit) in enumerate(zip(names, units, strict=True))
     )
-    return _Source(block, tuple(c for c in channels if len(c.values)), named=unique)
+    return Source(block, tuple(c for c in channels if len(c.values)), named=unique)
 
 
 def _channels(record: Channels, units: object) -> tuple[Channel, ...]:
@@ -134,7 +172,7 @@ def _is_unit(entry: str) -> bool:
     return bare.lower() in ("", "s", "ms", "hz", "v", "-") or quantity_of_unit(bare) is not None
 
 
-def _of_hits(source: _Source, paths: Sequence[Path]) -> list[str]:
+def _of_hits(source: Source, paths: Sequence[Path]) -> list[str]:
     time = time_among(source.channels)
     rates = [c for c in source.channels if len(c.values) == 1]
     data = [c for c in source.channels if c is not time and c.name != "X_Value" and len(c.values) > 1]
@@ -155,11 +193,11 @@ def _of_hits(source: _Source, paths: Sequence[Path]) -> list[str]:
     return [*_rate(source, time, rates), *entries, *_rule(pattern, paths)]
 
 
-def _rate(source: _Source, time: Channel | None, scalars: Sequence[Channel]) -> list[str]:
+def _rate(source: Source, time: Channel | None, scalars: Sequence[Channel]) -> list[str]:
     """Return where the sampling rate is from."""
     stated = source.record.rate_of([c.index for c in source.channels if c is not time][:1])
     if stated is not None:
-        return [f"# The files state their sampling rate, {stated:g} Hz."]
+        return [f"# rate: the files state it, {stated:g} Hz"]
     named = [c for c in scalars if is_rate(c.name)]
     if named:
         return [f"rate = {text_of(named[0].name)}  # {named[0].values[0]:g} Hz: by its name"]
@@ -179,7 +217,7 @@ def _rate(source: _Source, time: Channel | None, scalars: Sequence[Channel]) -> 
 
 
 def _hit_column(
-    source: _Source, channel: Channel, guess: Guess | None, usual: str, *, roving: bool
+    source: Source, channel: Channel, guess: Guess | None, usual: str, *, roving: bool
 ) -> list[str]:
     quantity = (
         Guess(usual, "as the other channels; correct it, or delete the entry") if guess is None else guess
@@ -205,7 +243,7 @@ def _hit_column(
     ]
 
 
-def _called(source: _Source, channel: Channel) -> list[str]:
+def _called(source: Source, channel: Channel) -> list[str]:
     if source.named:
         return [f"name = {text_of(channel.name)}"]
     return [
@@ -214,11 +252,11 @@ def _called(source: _Source, channel: Channel) -> list[str]:
     ]
 
 
-def _key(source: _Source, channel: Channel) -> str:
+def _key(source: Source, channel: Channel) -> str:
     return text_of(channel.name) if source.named else str(channel.index)
 
 
-def _unit(source: _Source, channel: Channel, quantity: str) -> list[str]:
+def _unit(source: Source, channel: Channel, quantity: str) -> list[str]:
     """Return the unit, and the scale where the numbers are parts of a full scale."""
     scale = [
         "# scale = ...  # value at full scale, by sensitivity and gain; needed"
@@ -237,7 +275,7 @@ def _unit(source: _Source, channel: Channel, quantity: str) -> list[str]:
     return [f'unit = "{si}"  # not in the file: correct it, with scale = ... for a sensitivity', *scale]
 
 
-def _of_frfs(source: _Source, lines: Channel, paths: Sequence[Path]) -> list[str]:
+def _of_frfs(source: Source, lines: Channel, paths: Sequence[Path]) -> list[str]:
     data = [c for c in source.channels if c is not lines and len(c.values) == len(lines.values)]
     data = [c for c in data if not (c.index < lines.index and time_among([c]) is c)]
     parts = [part_of(c) for c in data]

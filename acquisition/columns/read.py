@@ -66,8 +66,7 @@ def read_columns(
     InputError
         If a file, line or column cannot be used; the message states which and what to do.
     """
-    plan = layout if isinstance(layout, Layout) else read_layout(layout)
-    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    plan, files = layout_and_files(layout, paths)
     if not files:
         raise InputError(f"{plan.source}: no files to read")
     check_rules(plan.files, files, plan.source)
@@ -88,6 +87,15 @@ def read_columns(
         geometry=plan.nodes if geometry is None else geometry,
         source=named_files(files),
     )
+
+
+def layout_and_files(
+    layout: Layout | Path | str, paths: Path | str | Sequence[Path | str]
+) -> tuple[Layout, list[Path]]:
+    """Return a layout, read where its file is given, and files, one or several, as a list."""
+    plan = layout if isinstance(layout, Layout) else read_layout(layout)
+    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    return plan, files
 
 
 def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.columns.layout import Column, Layout, read_layout
-from acquisition.columns.read import blocks_of, scaled, with_unit
+from acquisition.columns.layout import Column, Layout
+from acquisition.columns.read import blocks_of, layout_and_files, scaled, with_unit
 from acquisition.columns.rules import FileRule, check_rules, rules_for
 from acquisition.columns.units import QUANTITIES
 from acquisition.display import named_files
@@ -38,8 +38,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
     InputError
         If a file, line or column cannot be used.
     """
-    plan = layout if isinstance(layout, Layout) else read_layout(layout)
-    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    plan, files = layout_and_files(layout, paths)
     forms = {QUANTITIES[c.quantity] for c in plan.columns}
     form = next(iter(forms))
     if len(forms) != 1 or form is None or plan.frequency_column is None or not files:

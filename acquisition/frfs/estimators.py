@@ -83,8 +83,24 @@ def estimate_frfs(
         hits = windowed(raw, windows, test.rate)
         places.append(impulse_places(hits.force[keep]))
         parts.append(_average(Spectra.of(hits, keep, test, lines), estimator, several, keep_scatter))
+    record = Record(test.duration, float(np.concatenate(places).mean()) / test.rate, test.form, test.rate)
+    decay = test.decay + (0.0 if windows is None else windows.decay)
+    return _joined(test, kept, frequency[lines], parts, record, decay, several, keep_scatter)
+
+
+def _joined(
+    test: HammerTest,
+    kept: Sequence[tuple[Hits, BoolArray]],
+    frequency: FloatArray,
+    parts: Sequence[_Average],
+    record: Record,
+    decay: float,
+    several: bool,
+    keep_scatter: bool,
+) -> FrfSet:
+    """Return the averages of all points as one set at lines (n_lines,) [Hz]."""
     return FrfSet(
-        frequency=frequency[lines],
+        frequency=frequency,
         values=np.concatenate([part.values for part in parts]),
         responses=tuple(dof for hits, _ in kept for dof in hits.responses),
         references=tuple(hits.reference for hits, _ in kept for _ in hits.responses),
@@ -92,10 +108,10 @@ def estimate_frfs(
         coherence=np.concatenate([part.coherence for part in parts]) if several else None,
         variance=np.concatenate([part.variance for part in parts]) if several else None,
         averages=np.concatenate([np.full(len(hits.responses), keep.sum()) for hits, keep in kept]),
-        decay=test.decay + (0.0 if windows is None else windows.decay),
+        decay=decay,
         geometry=test.geometry,
         source=test.source,
-        record=Record(test.duration, float(np.concatenate(places).mean()) / test.rate, test.form, test.rate),
+        record=record,
         scatter=_scatter(parts) if several and keep_scatter else None,
     )
 

@@ -59,7 +59,7 @@ def pulses_alone(test: HammerTest, *, averaged: bool = True) -> tuple[HammerTest
     length = float(np.median(np.concatenate([near.sum(axis=-1) for near in pulses]))) / test.rate
     text = (
         f"{test.source}: noise of the force, summed over records of {test.duration:.3g} s, reaches "
-        f"{100 * np.sqrt(bias):.2g} % of a pulse; the force is set to zero but for {length:.2g} s about each pulse"
+        f"{100 * np.sqrt(bias):.2g} % of a pulse; the force is set to zero outside {length:.2g} s about each pulse"
     )
     return replace(test, points=tuple(alone)), (*rung, Consequential(text))
 

@@ -113,8 +113,8 @@ def with_tails(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
     points = tuple(replace(p, force=force) for p, force in zip(test.points, forces, strict=True))
     size = float(np.median(sizes))
     text = (
-        f"{test.source}: a window cuts the force off while the filter of the converter rings, at {100 * size:.2g} % of "
-        "the peak; the ringing is continued by its poles"
+        f"{test.source}: a window ends the force while the filter of the converter still rings at {100 * size:.2g} % "
+        "of the peak; the rest of the ringing is computed from its poles"
     )
     return replace(test, points=points), (Consequential(text),) if size > HEARD else ()
 

@@ -300,7 +300,9 @@ def _notes(hits: Hits, number: int, wave: FloatArray, test: HammerTest) -> list[
         notes.append(f"response channel {_named(hits, dead)} is dead: the record is constant")
     left = float(left_at_end(motion).max())
     if left > UNDECAYED and test.decay == 0:
-        notes.append(f"response has {100 * left:.0f} % left at the end, which identification allows for")
+        notes.append(
+            f"response has {100 * left:.0f} % left at the end of the record; identification includes it"
+        )
     offset = float(np.median(force))
     if abs(offset) > OFFSET * wave.max():
         notes.append(f"force has an offset of {offset:.3g} N")

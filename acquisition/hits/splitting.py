@@ -115,9 +115,9 @@ def split_hits(
     """
     if test.decay:
         raise InputError(
-            f"{test.source}: the records look as if they held several hits each, and an exponential window of "
-            f"{test.decay:g} 1/s over them that weakened the later ones; give the records without it, record one hit "
-            "at a time, or take the window out of --decay, exponential_window or the ID lines if there was none"
+            f"{test.source}: each record seems to hold several hits, and an exponential window of {test.decay:g} 1/s "
+            "weakened the later ones; give the records without the window, record one hit at a time, or, if there was "
+            "no window, remove it from --decay, exponential_window or the ID lines"
         )
     level = propose_trigger(test) if trigger is None else float(trigger)
     found, width = _find(test, level)

@@ -59,27 +59,22 @@ def hammer_test(
     if "wrong place" in plan.bad.values() and len(first.points) < 2:
         raise InputError("hammer plan: a hit in the wrong place needs a system with a second point")
     contour = _Contour.over(plan)
-    drift = (
-        1.0 + plan.drift * rng.standard_normal(len(first.points))
-        if plan.drift
-        else np.ones(len(first.points))
-    )
-    force = np.empty((len(first.points), plan.hits, plan.samples))
-    motion = np.empty((len(first.points), plan.hits, len(first.responses), plan.samples))
-    for point, hit in np.ndindex(len(first.points), plan.hits):
+    count = len(first.points)
+    drift = 1.0 + plan.drift * rng.standard_normal(count) if plan.drift else np.ones(count)
+    force = np.empty((count, plan.hits, plan.samples))
+    motion = np.empty((count, plan.hits, len(first.responses), plan.samples))
+    for point, hit in np.ndindex(count, plan.hits):
         now = at_level if at_hit is None else partial(at_hit, point, hit)
         if plan.drift:
             now = partial(_drifted, now, float(drift[point]))
-        records = _one_hit(now, plan, contour, (point, hit), rng)
-        force[point, hit], motion[point, hit] = records
+        force[point, hit], motion[point, hit] = _one_hit(now, plan, contour, (point, hit), rng)
     force, motion = _converted(force, motion, plan)
-    points = tuple(
-        Hits(reference=dof, responses=first.responses, force=f, motion=m)
-        for dof, f, m in zip(first.points, force, motion, strict=True)
-    )
     return HammerTest(
         rate=plan.rate,
-        points=points,
+        points=tuple(
+            Hits(reference=dof, responses=first.responses, force=f, motion=m)
+            for dof, f, m in zip(first.points, force, motion, strict=True)
+        ),
         form=plan.form,
         decay=plan.decay,
         geometry=Geometry.empty() if geometry is None else geometry,

@@ -9,7 +9,7 @@ from typing import Any
 from cases.trial import Cause, Trial
 from modalkit.blind.scoring.judge import merged
 from updating import Diagnosis
-from updating.diagnosis.answer.result import Ranked
+from updating.diagnosis.answer.ranked import Ranked
 
 OUTCOMES = ("right", "class", "partly", "wrong", "unknown", "none")
 """The hidden set named, with its place; a class that holds it; a part of it named; another set; and the two verdicts

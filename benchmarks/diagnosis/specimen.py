@@ -145,9 +145,8 @@ def draw_specimen(
     )
     body = _draw_body(rng, spec, tolerances)
     scatter = np.exp(doubt * (rng.standard_normal() + rng.standard_normal(60)))
-    stated = rng.random() < 0.5
+    around = Environment(fluid_density=998.0) if rng.random() < 0.5 else Environment()
     rig = _draw_rig(rng, points, sensor, modes, absolute=absolute, baseline=baseline)
-    around = Environment(fluid_density=998.0) if stated else Environment()
     return Specimen(spec, Tolerances(tolerances, doubt), around, body, scatter, rig)
 
 

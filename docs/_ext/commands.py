@@ -24,6 +24,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from blocks import Block, blocks, page_name, renewed, same
+from made import renewed as renewed_made
 
 ROOT = Path(__file__).resolve().parents[2]
 MADE = ROOT / "docs" / "made"
@@ -115,6 +116,7 @@ def _environment(folder: Path) -> dict[str, str]:
         "OMP_NUM_THREADS": "1",
         "MODALKIT_CACHE": str(folder / ".cache"),
         "MPLBACKEND": "agg",
+        "MODALKIT_PROGRESS": "off",
         "COLUMNS": "120",
         "NO_COLOR": "1",
     }
@@ -185,6 +187,16 @@ def refresh(outcomes: Iterable[Outcome]) -> None:
             outcome.page.write_text(text[:start] + outcome.printed + text[end:], encoding="utf-8")
 
 
+def renew_made(chosen: Iterable[Path]) -> None:
+    """Make the kept parts of pages of reference anew."""
+    from reference import MAKERS
+
+    for page in chosen:
+        text = page.read_text(encoding="utf-8")
+        if (now := renewed_made(text, MAKERS)) != text:
+            page.write_text(now, encoding="utf-8")
+
+
 def keep_figures() -> None:
     """Lay the figures of README and of the app where they are looked for without a build."""
     for page in FIGURES:
@@ -217,6 +229,7 @@ def main() -> int:
         sys.stdout.write(outcome.message() + "\n")
     if given.refresh:
         refresh(wrong)
+        renew_made(chosen)
         keep_figures()
         return 0
     if not given.pages and front_figure_differs():

@@ -12,6 +12,7 @@ from typing import Any
 from commands import FRONT_DIFFERS, MADE, Outcome, front_figure_differs, pages, run_pages
 from docutils import nodes
 from latex2mathml.converter import convert
+from made import inserted
 from reference import MAKERS
 from sphinx.application import Sphinx
 from sphinx.util import logging
@@ -57,7 +58,7 @@ def _list(outcomes: list[Outcome]) -> str:
 
 def complete(app: Sphinx, docname: str, source: list[str]) -> None:
     """Put in what is made: reference, files that commands of a page wrote, a word on long commands."""
-    text = re.sub(r"^<!-- made: (.*) -->$", lambda m: MAKERS[m[1]](), source[0], flags=re.MULTILINE)
+    text = inserted(source[0], MAKERS)
     text = re.sub(r"^<!-- insert: (.*) -->$", lambda m: _inserted(app, MADE / m[1]), text, flags=re.MULTILINE)
     text = re.sub(r"^<!-- hidden -->\n```\w+\n.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     text = re.sub(r"^<!-- (?:needs \w+, )?slow -->\n", lambda _: SLOW, text, flags=re.MULTILINE)

@@ -64,11 +64,13 @@ def _paragraphs(text: str) -> str:
 
 def study() -> str:
     """Return the tables of a study file with their keys, from the schema that reads them."""
-    from modalkit.study import hypotheses, read, tables
+    from modalkit.study import hypotheses, model_tables, read, tables
     from modalkit.study.read import Study
 
     out: list[str] = []
-    told = _attribute_docs(tables) | _attribute_docs(read) | _attribute_docs(hypotheses)
+    told: dict[tuple[str, str], str] = {}
+    for module in (tables, model_tables, read, hypotheses):
+        told |= _attribute_docs(module)
     for header, model in _models("", Study):
         rows = [
             (f"`{name}`", _default(field), told[model.__name__, name] + _choices(field))
@@ -139,12 +141,12 @@ def effects() -> str:
 
     library = effects_document()["effects"]
     rows = [
-        (f"[`{e['name']}`](#{_anchor(e['name'])})", e["channel"], ", ".join(e["models"]), _names(e))
+        (f"[`{e['name']}`](#{e['name'].lower()})", e["channel"], ", ".join(e["models"]), _names(e))
         for e in library
     ]
     out = [_table(("effect", "acts on", "models", "mistaken for"), rows), ""]
     for effect in library:
-        out += [f"({_anchor(effect['name'])})=", f"## {effect['name']}", ""]
+        out += [f"## {effect['name']}", ""]
         out += [f"{effect['summary']} {effect['footprint']} *Separated by*: {effect['separated_by']}.", ""]
         priors = [(f"`{p['name']}`", _range(p), p["why"]) for p in effect["parameters"]]
         priors += [(f"`{label}`", "node numbers", "") for label in effect["labels"]]
@@ -152,10 +154,6 @@ def effects() -> str:
         if priors:
             out += [_table(("parameter", "prior", "why this range"), priors), ""]
     return "\n".join(out)
-
-
-def _anchor(name: str) -> str:
-    return f"effect-{name.lower().replace('_', '-')}"
 
 
 def _names(effect: dict[str, Any]) -> str:

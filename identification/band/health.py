@@ -65,8 +65,8 @@ def _on_coherence(model: ModalModel) -> tuple[str, ...]:
     if not len(poor):
         return ()
     return (
-        f"coherence about mode(s) {', '.join(str(int(m) + 1) for m in poor)} is down to {found[poor].min():.2f}: hits "
-        "that scatter in place, noise, or a structure that is not linear; hit more often and evenly",
+        f"coherence near mode(s) {', '.join(str(int(m) + 1) for m in poor)} falls to {found[poor].min():.2f}: the hits "
+        "scatter in place, there is noise, or the structure is nonlinear; hit more often and at the same place",
     )
 
 
@@ -77,7 +77,7 @@ def _on_hits(hits: Sequence[HitVerdict]) -> tuple[str, ...]:
     usual = usual_fault(refused)
     often = "" if usual is None else f", most for: {usual[1]}"
     return (
-        f"{len(refused)} of {len(hits)} hits are not used{often}; repeat the test rather than explain it",
+        f"{len(refused)} of {len(hits)} hits are not used{often}; repeat the test before you interpret it",
     )
 
 
@@ -90,7 +90,7 @@ def _on_window(model: ModalModel) -> tuple[str, ...]:
     worst = int(heavy[np.argmin(own[heavy])])
     times = decay / own[worst]
     return (
-        f"the exponential window of {decay:.3g} 1/s was removed from the damping, but is {times:.2g} times "
-        f"what mode {worst + 1} has left: an error of 1 % in it is one of {times:.2g} % in that damping; "
-        "record longer with less window",
+        f"the exponential window of {decay:.3g} 1/s was removed from the damping. It is {times:.2g} times the "
+        f"damping of mode {worst + 1}, so an error of 1 % in the window is an error of {times:.2g} % in that damping; "
+        "record longer, with a weaker window",
     )

@@ -65,8 +65,8 @@ def informed_band(
     first, last = runs[0].tolist() if len(runs) else (0, 0)
     if last - first < 2 * ABOUT:
         return asked, Consequential(
-            f"hardly a spectral line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak "
-            "there; do not trust modes of this band"
+            f"almost no spectral line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too "
+            "weak there; do not trust modes in this band"
         )
     low = band[0] if not (lost & inside)[:first].any() else float(frfs.frequency[first])
     high = band[1] if not (lost & inside)[last:].any() else float(frfs.frequency[last])
@@ -81,7 +81,7 @@ def informed_band(
         f"modes are sought from {low:.4g} to {high:.4g} Hz only, {instead}: {why} in the rest; {advice}, or name "
         "a mode there with add, to go further"
         + (
-            f"; {', '.join(again)} there is information again: give that as a band of its own"
+            f"; {', '.join(again)} the FRFs carry information again: identify that band separately"
             if again
             else ""
         )
@@ -102,14 +102,14 @@ def _lost(frfs: FrfSet, tests: Sequence[Judged], inside: BoolArray) -> tuple[Boo
     """Return the lines that carry no information, None where that cannot be determined; why, and what to do."""
     coherent, advice = best_coherence(frfs), "hit with a harder tip, sample faster"
     if tests:
-        why = "the force, or the filter before the converter, leaves too little"
+        why = "the force is too weak, or the anti-aliasing filter removes too much,"
         return _lost_to_force(frfs, tests, coherent), why, advice
     if coherent is not None:
         return _lost_at_the_end(coherent >= LOST, inside), "the coherence is lost", advice
     good = np.zeros(len(inside), dtype=np.bool_)
     good[inside] = ~noise_lines(frfs.values[:, inside])
-    why = "the phases of nearly all FRFs are those of noise"
-    return _lost_at_the_end(good, inside), why, "let the force reach further"
+    why = "the phases of nearly all FRFs are random"
+    return _lost_at_the_end(good, inside), why, "hit so that the force reaches higher frequencies"
 
 
 def _lost_to_force(frfs: FrfSet, tests: Sequence[Judged], coherent: FloatArray | None) -> BoolArray | None:

@@ -28,15 +28,15 @@ def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
         lost = frequency[np.interp(frequency, frfs.frequency, coherent) < LOST]
         if len(lost):
             statement.append(
-                f"mode(s) at {_named(lost)} lie where no FRF has a coherence over {LOST:g}: the force left nothing "
-                "there, and what is found may be noise; leave them out with drop, or end the band below"
+                f"mode(s) at {_named(lost)} lie where no FRF has a coherence over {LOST:g}: the force is too weak "
+                "there, and they may be noise; leave them out with drop, or end the band below them"
             )
     filtered = frequency[frequency > _passed(frfs)]
     if len(filtered):
         statement.append(
-            f"mode(s) at {_named(filtered)} lie above {hertz(_passed(frfs))}, the sampling rate over {PASSED:g}, where "
-            "the filter before the converter falls: what is folded back from beyond half the rate may pass for a mode; "
-            "sample faster, or leave them out with drop"
+            f"mode(s) at {_named(filtered)} lie above {hertz(_passed(frfs))} (sampling rate / {PASSED:g}), where the "
+            "anti-aliasing filter falls off: an alias from beyond half the sampling rate may look like a mode; sample "
+            "faster, or leave them out with drop"
         )
     return tuple(statement)
 

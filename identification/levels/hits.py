@@ -97,8 +97,8 @@ def why_not(entries: Sequence[UsedHits]) -> str | None:
     span = float(levels.max() / max(levels.min(), np.finfo(float).tiny))
     if span < SPAN:
         return (
-            f"the used hits span {levels.min():.3g} to {levels.max():.3g} N, 1 : {span:.2g}; a level dependence asks "
-            f"for 1 : {SPAN:g}: hit softly and hard at each point"
+            f"the used hits span {levels.min():.3g} to {levels.max():.3g} N, 1 : {span:.2g}; to find a level "
+            f"dependence, 1 : {SPAN:g} is needed: hit softly and hard at each point"
         )
     return None
 

@@ -17,9 +17,9 @@ from acquisition import Windows
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from identification.fit.noise.disagreement import student_widening
 from identification.level_dependence import LevelDependence
-from identification.levels.hits import Judged, used_hits, why_not
+from identification.levels.hits import Judged, why_not
 from identification.levels.one_level import hit_poles, hit_residues, hit_shifts
-from identification.levels.slopes import band_of, is_known, of_single, rows_of, weights_of
+from identification.levels.slopes import band_of, known_hits, of_single, rows_of, weights_of
 from identification.model import ModalModel
 
 HALF = 0.5
@@ -81,7 +81,7 @@ def growth(
     corrected for the mean of each point and for b (MacKinnon and White, J. Econometrics 29 (1985) 305-325, HC1).
     """
     rows = rows_of(model)
-    entries = [e for e in used_hits(tests) if is_known(e, rows)]
+    entries = known_hits(tests, rows)
     if why_not(entries) is not None:
         return None
     weights, first = weights_of(model), 0

@@ -83,13 +83,12 @@ def level_dependence(
     the line, widened for its degrees of freedom so that 1.96 of them are a 95 % interval.
     """
     rows = rows_of(model)
-    entries = [e for e in used_hits(tests) if is_known(e, rows)]
+    entries = known_hits(tests, rows)
     if why_not(entries) is not None:
         return None
-    weights = weights_of(model)
-    band = band_of(model)
     levels, common = np.concatenate([e.levels for e in entries]), mean_level(entries)
     expected = np.outer(levels - common, np.zeros(len(model)) if slope is None else slope)
+    weights, band = weights_of(model), band_of(model)
     singles = (f for e in entries for f in e.single_frfs(windows=windows, band=band))
     found = [_of_hit(model, f, weights, rows, d) for f, d in zip(singles, expected, strict=True)]
     shifts, variances = (np.array(part) for part in zip(*found, strict=True))
@@ -151,6 +150,11 @@ def rows_of(model: ModalModel) -> dict[tuple[Dof, Dof], int]:
 def band_of(model: ModalModel) -> tuple[float, float]:
     """Return the lowest and the highest line that a model was identified from [Hz]."""
     return float(model.frfs.frequency[0]), float(model.frfs.frequency[-1])
+
+
+def known_hits(tests: Sequence[Judged], rows: dict[tuple[Dof, Dof], int]) -> list[UsedHits]:
+    """Return the hits that are used, of the points with FRFs among those identified."""
+    return [entry for entry in used_hits(tests) if is_known(entry, rows)]
 
 
 def is_known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:

@@ -16,8 +16,8 @@ from scipy import ndimage
 from acquisition import Windows
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
-from identification.levels.hits import Judged, mean_level, used_hits
-from identification.levels.slopes import band_of, is_known, rows_of
+from identification.levels.hits import Judged, mean_level
+from identification.levels.slopes import band_of, known_hits, rows_of
 from identification.model import ModalModel
 
 LARGEST, STEPS = 0.15, 121
@@ -121,7 +121,7 @@ def _singles(model: ModalModel, tests: Sequence[Judged], windows: Windows | None
     """Return the common level [N], and the FRFs of the single hits that the model has."""
     rows = rows_of(model)
     band = band_of(model)
-    entries = [e for e in used_hits(tests) if is_known(e, rows)]
+    entries = known_hits(tests, rows)
     level = mean_level(entries)
     found = [
         (values, rows[pair], own / level - 1, own**2)

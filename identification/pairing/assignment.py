@@ -92,14 +92,20 @@ def pair(
         found = in_order(test, model, np.log(max_factor), spread)
         values = np.full(shift.shape, np.nan)
     else:
-        values = np.asarray(mac_matrix, dtype=float)
-        if values.shape != shift.shape:
-            raise InputError(
-                f"the MAC matrix has shape {values.shape}; {test.size} test modes and {model.size} model "
-                "modes were given"
-            )
+        values = _of_modes(mac_matrix, shift)
         found = _by_shape(shift, values, min_mac, np.log(max_factor), spread)
     return tuple(Pair(i, j, float(values[i, j]), float(np.expm1(shift[i, j]))) for i, j in sorted(found))
+
+
+def _of_modes(mac_matrix: AnyArray, shift: FloatArray) -> FloatArray:
+    """Return a MAC matrix; refuse one that is not of the modes given."""
+    values = np.asarray(mac_matrix, dtype=float)
+    if values.shape != shift.shape:
+        raise InputError(
+            f"the MAC matrix has shape {values.shape}; {shift.shape[0]} test modes and {shift.shape[1]} model "
+            "modes were given"
+        )
+    return values
 
 
 def common_shift(shift: FloatArray, weight: FloatArray, limit: float, spread: float) -> float:

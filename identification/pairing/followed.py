@@ -27,8 +27,9 @@ def unlikeness(
     farthest : float
         Logarithm from which on a frequency lies no farther [-].
     """
-    distance = np.nan_to_num(np.abs(away), nan=farthest, posinf=farthest)
-    return np.asarray(1 - np.nan_to_num(alike) + weight * np.minimum(distance, farthest))
+    distance = np.abs(away)
+    distance = np.where(distance < farthest, distance, farthest)  # nan is not below it
+    return np.asarray(1 - np.where(np.isnan(alike), 0.0, alike) + weight * distance)
 
 
 def counterparts(cost: FloatArray) -> IntArray:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from acquisition.arrays import ComplexArray
-from acquisition.dof import Dof
-from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
+from identification.poles.frf_matrix import full_matrix, indicators
 
 
 def cmif(frfs: FrfSet, *, band: tuple[float, float] | None = None, count: int = 4) -> pd.DataFrame:
@@ -40,36 +38,6 @@ def cmif(frfs: FrfSet, *, band: tuple[float, float] | None = None, count: int = 
         If no response has every reference, or the band holds no line.
     """
     chosen = frfs if band is None else frfs.band(*band)
-    matrix, left_out = _matrix(chosen)
-    values = np.linalg.svd(matrix, compute_uv=False)[:, :count] ** 2
-    lines = pd.Index(chosen.frequency, name="frequency [Hz]")
-    table = pd.DataFrame(values, lines, pd.RangeIndex(1, values.shape[1] + 1, name="CMIF"))
-    table.attrs["left_out"] = left_out
-    return table
-
-
-def _matrix(frfs: FrfSet) -> tuple[ComplexArray, list[str]]:
-    """Return the FRFs as (n_lines, n_responses, n_references), and the degrees of freedom that lack one."""
-    places: dict[tuple[Dof, Dof], list[int]] = {}
-    for i, (response, reference) in enumerate(zip(frfs.responses, frfs.references, strict=True)):
-        places.setdefault((_positive(response), _positive(reference)), []).append(i)
-    responses, references = (list(dict.fromkeys(pair[k] for pair in places)) for k in (0, 1))
-    rows = [a for a in responses if all((a, b) in places for b in references)]
-    columns = [b for b in references if all((a, b) in places for a in responses)]
-    if len(rows) * len(references) >= len(columns) * len(responses):
-        columns = references
-    else:
-        rows = responses
-    if not rows or not columns:
-        raise InputError(
-            f"{frfs.source}: no response was measured with every reference; select FRFs that form a full matrix"
-        )
-    left_out = [str(d) for d in responses if d not in rows] + [str(d) for d in references if d not in columns]
-    sign = np.array([a.sign * b.sign for a, b in zip(frfs.responses, frfs.references, strict=True)])
-    values = frfs.values * sign[:, None]
-    full = [[values[places[a, b]].mean(axis=0) for b in columns] for a in rows]
-    return np.moveaxis(np.array(full, dtype=np.complex128), 2, 0), left_out
-
-
-def _positive(dof: Dof) -> Dof:
-    return Dof(dof.node, abs(dof.direction))
+    matrix, left_out = full_matrix(chosen)
+    values = np.asarray(np.linalg.svd(matrix, compute_uv=False)[:, :count] ** 2, dtype=np.float64)
+    return indicators(chosen, values, "CMIF", left_out)

@@ -44,7 +44,7 @@ def not_tied(points: Sequence[str]) -> str:
     """State which points are left out of the shapes."""
     listed = ", ".join(points[:5]) + (f" and {len(points) - 5} more" if len(points) > 5 else "")
     return (
-        f"no FRF ties {listed} to the other points; their scale and sign relative to the others are unknown, and "
+        f"no FRF connects {listed} to the other points; their scale and sign relative to the others are unknown, and "
         "they are left out of the mode shapes: measure one point in common"
     )
 
@@ -117,7 +117,7 @@ def about_drive_points(
         late = np.flatnonzero((doubt < 1.0 / _CERTAIN) & (angle - 3.0 * doubt > _DELAYED) & ~negative) + 1
         if len(late):
             stated.append(
-                f"the modal constant of the drive point {plan.rows[i]} is turned by up to "
+                f"the phase of the modal constant of the drive point {plan.rows[i]} is off by up to "
                 f"{np.degrees(angle[late - 1].max()):.0f} degrees in mode(s) {_listed(late)}: strongly complex modes, "
                 "or a delay between the channels"
             )
@@ -130,7 +130,7 @@ def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
     if others:
         return Consequential(
             f"{statement} and a positive one in others: hit and sensor cannot have been at one place, "
-            "so it gives the mode shapes no scale; check the node numbers"
+            "so it cannot scale the mode shapes; check the node numbers"
         )
     return Consequential(f"{statement}: check the direction signs of hammer and sensor")
 

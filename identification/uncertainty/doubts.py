@@ -98,8 +98,8 @@ def _ringing(frfs: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
     if not len(which):
         return ()
     text = (
-        f"mode(s) {_numbers(which)}: {100 * left.max():.0f} % is left at the end of a record of {1 / frfs.df:.3g} s "
-        "(1/df). If the FRFs come from records that long, leakage biases their damping and level: record longer, or "
+        f"mode(s) {_numbers(which)}: {100 * left.max():.0f} % of the response is left after {1 / frfs.df:.3g} s "
+        "(1/df). If the records are that long, leakage biases their damping and level: record longer, or "
         "use an exponential window"
     )
     return (Consequential(text),)
@@ -112,8 +112,8 @@ def _drifting(poles: ComplexArray, scatter: FloatArray) -> tuple[str, ...]:
         return ()
     worst = 100 * (scatter[which] / np.abs(poles[which])).max()
     return (
-        f"the frequency of mode(s) {_numbers(which)} differs from FRF to FRF by {percent(worst)}: a sensor or hammer "
-        "that roves and loads the structure, or drift; damping comes out too large and shapes suffer",
+        f"the frequency of mode(s) {_numbers(which)} differs from FRF to FRF by {percent(worst)}: a roving sensor or "
+        "hammer loads the structure, or the frequencies drift; damping is then too large and shapes are wrong",
     )
 
 
@@ -130,8 +130,8 @@ def _in_one_frf(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> tup
     for row in np.unique(most[alone]):
         which = np.flatnonzero(alone & (most == row))
         stated.append(
-            f"mode(s) {_numbers(which)} show in the FRF {frfs.responses[row]}/{frfs.references[row]} alone: does it "
-            "belong to this test?"
+            f"mode(s) {_numbers(which)} appear in the FRF {frfs.responses[row]}/{frfs.references[row]} only; check "
+            "whether it belongs to this test"
         )
     return tuple(stated)
 
@@ -160,8 +160,8 @@ def not_at_rest(fit: Fit, poles: ComplexArray) -> str:
     worst = int(np.argmax(np.abs(move[own])))
     place = float(np.abs(poles[worst])) / (2 * np.pi)
     return (
-        "the refinement of the poles did not come to rest: frequencies and damping may still change, frequencies by "
-        f"the next step at most {abs(move[own[worst]]):.2g} Hz, at {hertz(place)}, and standard deviations, which are "
-        "those of a fit at rest, may be too small. Most often it has more poles than the data bear out: narrow the "
-        "band, lower the order, or drop what is no mode, and use the numbers that stay within their standard deviations"
+        "the refinement of the poles did not converge: the next step would change frequencies by up to "
+        f"{abs(move[own[worst]]):.2g} Hz (at {hertz(place)}), damping may change too, and standard deviations may be "
+        "too small. The usual reason is more poles than the data support: narrow the band, lower the order, or drop "
+        "poles that are not modes, and use the numbers that then stay within their standard deviations"
     )

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from acquisition.errors import InputError
+from modalkit.app.form import model_of
 
 Content = dict[str, Any]
 Arguments = Mapping[str, Any]
@@ -136,6 +137,20 @@ def pair(content: Content, a: Arguments) -> str:
     return f"pair {hertz:.6g} Hz with {f'mode {partner}' if partner else 'none'}"
 
 
+def join(content: Content, a: Arguments) -> str:
+    """Join two points by a line in drawings, or part them; ``drawn`` are the lines so far, as pairs of points."""
+    test, pair = _test(content), sorted((int(a["points"][0]), int(a["points"][1])))
+    if pair[0] == pair[1]:
+        raise InputError(f"point {pair[0]} cannot be joined with itself; choose another one")
+    lines = [sorted(map(int, line)) for line in test.get("lines") or a["drawn"]]
+    joined = pair not in lines
+    left = [*lines, pair] if joined else [line for line in lines if line != pair]
+    if not left:
+        raise InputError("this is the last line; join other points first")
+    test["lines"] = left
+    return f"{'join' if joined else 'part'} points {pair[0]} and {pair[1]}"
+
+
 def set_value(content: Content, a: Arguments) -> str:
     """Set one key of the study; an empty text takes it out."""
     *tables, key = [str(part) for part in a["path"]]
@@ -158,12 +173,25 @@ def replace_text(content: Content, a: Arguments) -> str:
     return "edit the study"
 
 
+ACCEPTED = "accept "
+"""How the label of an accepted row begins."""
+
+
 def accept(content: Content, a: Arguments) -> str:
-    """Put effects into the model; further ones of a kind stand beside those there are."""
+    """Put effects into the model; further ones of a kind stand beside those there are.
+
+    ``places`` are those of points after an exchange of labels.
+    """
     entries = [dict(entry) for entry in a["effects"]]
+    places = {str(node): list(place) for node, place in dict(a.get("places", {})).items()}
     model = content.setdefault("model", {})
     _put(model, "effect", [*model.get("effect", []), *entries])
-    return f"put {', '.join(str(entry['name']) for entry in entries)} into the model"
+    if places:
+        test = _test(content)
+        test["places"] = {**test.get("places", {}), **places}
+    words = [str(entry["name"]).replace("_", " ") for entry in entries]
+    words += [f"places of points {' and '.join(places)} exchanged"] * bool(places)
+    return f"{ACCEPTED}{', '.join(words)}"
 
 
 def remove(content: Content, a: Arguments) -> str:
@@ -183,8 +211,10 @@ ACTIONS: Mapping[str, Action] = {
     "references": Action(references),
     "estimator": Action(estimator),
     "pair": Action(pair),
+    "join": Action(join),
     "set": Action(set_value),
     "text": Action(replace_text),
+    "model": Action(model_of),
     "accept": Action(accept),
     "remove": Action(remove),
 }

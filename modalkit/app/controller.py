@@ -9,10 +9,13 @@ from typing import Any
 
 from acquisition.errors import InputError, ModalkitError
 from identification import ModalModel
-from modalkit.app.acceptance import accepted_entries
-from modalkit.app.actions import ACTIONS
+from modalkit.app.acceptance import exchanged_points
+from modalkit.app.actions import ACCEPTED, ACTIONS
+from modalkit.app.asked import asks
 from modalkit.app.digests import digest_of
+from modalkit.app.doing import Doing
 from modalkit.app.export import Handed, export, free_folder, study_text
+from modalkit.app.form import form_page
 from modalkit.app.history import History, State
 from modalkit.app.jobs import Jobs, drawings_of, report_of, result_of
 from modalkit.app.model_page import Moved, model_page, moved_page
@@ -20,16 +23,18 @@ from modalkit.app.opened import Opened
 from modalkit.app.store import Store
 from modalkit.app.work import KINDS
 from modalkit.app.workbench import Workbench
-from modalkit.output.schemas.diagnosis import SOMETHING_ELSE
 from modalkit.study.read import Study
-from modalkit.views.hits import frf_page, hits_page, record_page
-from modalkit.views.modes import fit_page, modes_page, provisional_page
+from modalkit.views.hits import frf_page, hits_page, others_page, record_page
+from modalkit.views.modes import fit_page, indicators_page, measured_page, modes_page, provisional_page
 from modalkit.views.shapes import Beside, shapes_page
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
 from modalkit.workflow.references import references_of
 
-NEEDS_MODES = frozenset({"hit", "pick", "drop", "band", "order", "references", "estimator", "text", "set"})
-"""Changes that are made only if the modes can be identified after them."""
+NEEDS_MODES = frozenset(
+    {"hit", "pick", "drop", "band", "order", "references", "estimator", "text", "model", "set"}
+)
+"""Changes that are made only if the modes can be identified after them. Those after a hit are identified when a page
+asks for them."""
 
 EXPORT = "modalkit-export"
 
@@ -43,12 +48,16 @@ class Controller:
         What was opened.
     store : Store
         Where its state is kept; one that is there is gone on with.
+    warm : bool
+        Whether a process for long work is kept ready once a page of such work is asked for; :meth:`close` ends it.
     """
 
-    def __init__(self, opened: Opened, store: Store) -> None:
+    def __init__(self, opened: Opened, store: Store, *, warm: bool = False) -> None:
         """Go on where the last session ended."""
-        self._opened, self._store = opened, store
-        self._workbench, self._jobs = Workbench(), Jobs()
+        self._opened, self._store, self._warm = opened, store, warm
+        times = store.folder / "times.json"
+        self._doing, self._jobs = Doing(times), Jobs(times)
+        self._workbench = Workbench(self._doing)
         self._lock = threading.RLock()
         self._history = store.load() or History((State.of(opened.content, "open"),))
 
@@ -85,6 +94,7 @@ class Controller:
             "position": history.position,
             "undo": history.undo_label,
             "redo": history.redo_label,
+            "accepted": history.labels(ACCEPTED),
             "job": None if job is None else job.document(),
             "results": [kind for kind in KINDS if self._result(kind) is not None],
         }
@@ -105,7 +115,11 @@ class Controller:
             if study.model is not None:
                 study.spec()
                 study.accepted()
-            if name in NEEDS_MODES:
+            if name == "hit":
+                self._workbench.processed(study)
+            elif name == "join":
+                self._workbench.modal(study)
+            elif name in NEEDS_MODES:
                 self._workbench.modes(study)
             elif study.model is not None:
                 self._beside(study)
@@ -126,7 +140,7 @@ class Controller:
     def hits(self) -> dict[str, Any]:
         """Return the page of the hits."""
         with self._lock:
-            return hits_page(self._workbench.processed(self.study), self.study)
+            return _asking(hits_page(self._workbench.processed(self.study), self.study))
 
     def record(self, point: str, hit: int) -> dict[str, Any]:
         """Return the records of one hit."""
@@ -137,6 +151,11 @@ class Controller:
         """Return one FRF."""
         with self._lock:
             return frf_page(self._processed(), index)
+
+    def others(self, index: int) -> dict[str, Any]:
+        """Return the magnitudes of the other FRFs of the same force."""
+        with self._lock:
+            return others_page(self._processed(), index)
 
     def _processed(self) -> Processed:
         processed = self._workbench.processed(self.study)
@@ -151,12 +170,25 @@ class Controller:
             processed, content = controller.processed(study), controller.content(study)
             origins = None if processed is None else controller.origins(study)
             references = [] if content is None else references_of(content)
-            return modes_page(processed, controller.modes(study), origins, study, references)
+            return _asking(modes_page(processed, controller.modes(study), origins, study, references))
+
+    def measured(self) -> dict[str, Any] | None:
+        """Return the FRFs that modes are to be identified from; None where that is done, or there are none."""
+        with self._lock:
+            study = self.study
+            if self._workbench.has_modes(study):
+                return None
+            return measured_page(self._processed(), study)
 
     def fit(self, index: int) -> dict[str, Any]:
         """Return one FRF with its fit."""
         with self._lock:
             return fit_page(self._workbench.identified(self.study), index)
+
+    def indicators(self) -> dict[str, Any]:
+        """Return the mode indicator functions."""
+        with self._lock:
+            return indicators_page(self._workbench.identified(self.study))
 
     def provisional(self, hertz: float, index: int) -> dict[str, Any]:
         """Return what a picture needs of a pick, before its last digits are there."""
@@ -168,7 +200,7 @@ class Controller:
         with self._lock:
             modal = self._workbench.modal(self.study)
             beside, why = (None, "") if modal.shapes is None else self._beside_or_why()
-            page = shapes_page(modal, beside) | {"no_model": why}
+            page = shapes_page(modal, beside) | {"no_model": why, "stated": bool(self.study.test.lines)}
             if page.get("model") is not None:
                 page["changed"] = self._changed()
             return page
@@ -187,7 +219,10 @@ class Controller:
         with self._lock:
             beside, why = self._beside_or_why()
             content = self._history.now.content
-            return model_page(content, self.study, beside, why) | self._frfs()
+            page = model_page(content, self.study, beside, why) | self._frfs()
+            page["asks"] = asks((page["correlation"] or {}).get("warnings", ()))
+            page["form"] = form_page(self._opened.study_path.parent) if self.study.model is None else None
+            return page
 
     def _frfs(self) -> dict[str, Any]:
         """Return the names of the FRFs, and which is shown first."""
@@ -224,9 +259,13 @@ class Controller:
             raise InputError(f"unknown job {kind!r}")
         job = self._jobs.last
         mine = job is not None and job.kind == kind and job.key == self._key
+        result = self._result(kind)
+        if self._warm and self.study.model is not None:
+            self._jobs.warm()
         return {
             "job": job.document() if job is not None and (mine or job.state == "running") else None,
-            "result": self._result(kind),
+            "result": result,
+            "asks": asks(() if result is None else result["document"].get("warnings", ())),
         }
 
     def drawings(self, kind: str) -> dict[str, Any] | None:
@@ -267,18 +306,36 @@ class Controller:
         """
         with self._lock:
             found = self._result("diagnose")
-            every = [] if found is None else found["document"]["cause"]["ranking"]
-            ranking = [one for one in every if one["effects"] != [SOMETHING_ELSE]]
-            if not 0 <= row < len(ranking):
+            rows = [] if found is None else found["rows"]
+            if not 0 <= row < len(rows):
                 raise InputError(f"the diagnosis has no row {row + 1}; diagnose first")
-            predictor, since_baseline = self._workbench.predictor(self.study), self.study.baseline is not None
-            entries = accepted_entries(ranking[row], predictor, since_baseline=since_baseline)
-            return self.act("accept", {"effects": entries})
+            if rows[row]["entries"] is None:
+                raise InputError(
+                    f"row {row + 1} cannot be accepted: {rows[row]['why_not'] or 'it has no effect'}"
+                )
+            frfs = self._workbench.processed(self.study)
+            fixed = set() if frfs is None else _hit_and_measured(frfs)
+            modal = self._workbench.modal(self.study)
+            entries, places = exchanged_points(rows[row]["entries"], modal, fixed)
+            return self.act("accept", {"effects": entries, "places": places})
 
     def stop(self) -> dict[str, Any]:
         """Stop the work that runs."""
         self._jobs.stop()
         return self.state()
+
+    def doing(self) -> dict[str, Any]:
+        """Return what is computed for a page at this moment."""
+        return self._doing.document()
+
+    def interrupt(self) -> dict[str, Any]:
+        """Stop what is computed for a page; what was not finished is not kept."""
+        self._doing.stop()
+        return {}
+
+    def close(self) -> None:
+        """Stop all work; nothing can be started any more."""
+        self._jobs.close()
 
     def export(self) -> dict[str, Any]:
         """Write all of this state into a folder of its own beside the study, or into the store's."""
@@ -287,13 +344,40 @@ class Controller:
             handed = Handed(
                 self._workbench.processed(study),
                 self._workbench.modes(study),
+                self._workbench.modal(study).geometry,
                 {kind: self._folder(kind) for kind in KINDS},
             )
             folder = free_folder(self._place(), f"{self._opened.path.stem}-{EXPORT}")
             text = study_text(self._opened, now.content, self._name(), folder)
-            return {"folder": str(folder), "files": export(folder, text, handed)}
+            files = export(folder, text, handed)
+            return {"folder": str(folder), "files": files, "missing": self._earlier()}
+
+    def _earlier(self) -> list[dict[str, str]]:
+        """Return the results that belong to another state alone, each with the change that parts it from this one."""
+        history, digest = self._history, digest_of(self.study.inputs()[1:])
+        found = []
+        for kind in KINDS:
+            if self._result(kind) is not None:
+                continue
+            for i, state in reversed(list(enumerate(history.states))):
+                if result_of(self._store.results(kind, state.key(digest))) is not None:
+                    after = history.states[min(i + 1, history.position)].label if i < history.position else ""
+                    found.append({"kind": kind, "change": after})
+                    break
+        return found
 
     def _place(self) -> Path:
         """Return the study's folder, or the store's where that is read-only."""
         beside = self._opened.study_path.parent.resolve()
         return beside if self._store.folder.resolve().is_relative_to(beside) else self._store.folder
+
+
+def _asking(page: dict[str, Any]) -> dict[str, Any]:
+    """Return a page with what its warnings ask for."""
+    return page | {"asks": asks(page["warnings"])}
+
+
+def _hit_and_measured(processed: Processed) -> set[int]:
+    """Return the nodes that are both hit and measured."""
+    frfs = processed.frfs
+    return {dof.node for dof in frfs.responses} & {dof.node for dof in frfs.references}

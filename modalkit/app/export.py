@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from acquisition import write_uff
+from acquisition import Geometry, write_uff
 from acquisition.errors import InputError
 from acquisition.modes.csv_table import modes_csv
 from acquisition.warned import in_order
@@ -20,7 +20,7 @@ from modalkit.app.toml import toml_text
 from modalkit.output.documents import modes_document
 from modalkit.output.whole import plain, write_text
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +33,15 @@ class Handed:
         The FRFs, where there are any.
     modes : ModalModel or Modes
         The modes.
+    geometry : Geometry
+        The points of the test where the study or its model places them.
     results : mapping of str to Path
         Folders of finished work on this very state, by kind.
     """
 
     processed: Processed | None
     modes: ModalModel | Modes
+    geometry: Geometry
     results: Mapping[str, Path]
 
 
@@ -98,7 +101,7 @@ def export(folder: Path, study: str, handed: Handed) -> list[str]:
 
 
 def _write(folder: Path, study: str, handed: Handed) -> None:
-    processed, modes = handed.processed, handed.modes
+    processed, modes, geometry = handed.processed, handed.modes, handed.geometry
     write_text(folder / "study.toml", study)
     hits = () if processed is None else processed.hits
     title = "" if processed is None else processed.content.title
@@ -106,9 +109,9 @@ def _write(folder: Path, study: str, handed: Handed) -> None:
     _json(folder / "modes.json", modes_document(modes, hits, warnings))
     write_text(folder / "modes.csv", modes_csv(modes.modal))
     if modes.modal.shapes is not None:
-        write_uff(folder / "modes.uff", modal=modes.modal, geometry=modes.modal.geometry, title=title)
+        write_uff(folder / "modes.uff", modal=modes.modal, geometry=geometry, title=title)
     if processed is not None:
-        write_uff(folder / "frfs.uff", frfs=processed.frfs, geometry=processed.frfs.geometry, title=title)
+        write_uff(folder / "frfs.uff", frfs=processed.frfs, geometry=geometry, title=title)
     for kind, where in handed.results.items():
         found = result_of(where)
         if found is not None:

@@ -73,6 +73,11 @@ class History:
         """What redo would do again; None where there is nothing."""
         return self.states[self.position + 1].label if self.position + 1 < len(self.states) else None
 
+    def labels(self, start: str) -> list[str]:
+        """Return the rests of all labels up to now that begin with a text."""
+        before = [state.label for state in self.states[: self.position + 1]]
+        return [label.removeprefix(start) for label in before if label.startswith(start)]
+
     def then(self, content: Mapping[str, Any], label: str) -> History:
         """Return the history with a further state in place of those undone; itself where nothing changes."""
         state = State.of(content, label)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from acquisition.errors import InputError
+from modalkit.app.times import Stages, keep, kept, remaining
 from modalkit.app.work import DRAWINGS, KINDS, REPORT, RESULT
 from modalkit.module_path import child_environment
 from modalkit.output.whole import write_text
@@ -42,6 +43,12 @@ class Job:
         How it stands.
     error : str
         What went wrong.
+    before : sequence of (str, float)
+        Stages of the last piece of this kind, with its end.
+    ended : float
+        How long it took, once it is done [s].
+    found : dict of str to dict
+        Single causes as far as they are compared, by name.
     """
 
     kind: str
@@ -52,31 +59,60 @@ class Job:
     stages: list[tuple[str, float]] = field(default_factory=list)
     state: str = "running"
     error: str = ""
+    before: Stages = ()
+    ended: float = 0.0
+    found: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def document(self) -> dict[str, Any]:
         """Return how it stands."""
+        seconds = time.monotonic() - self.begun
         return {
+            "remaining_s": remaining(self.stages, seconds, self.before),
             "kind": self.kind,
             "key": self.key,
             "state": self.state,
             "stages": [{"name": name, "at_s": at} for name, at in self.stages],
-            "seconds": time.monotonic() - self.begun,
+            "seconds": seconds,
             "error": self.error,
+            "found": list(self.found.values()),
         }
 
 
 class Jobs:
-    """The work of one app, one piece at a time."""
+    """The work of one app, one piece at a time.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    times : Path
+        File of how long work took.
+    """
+
+    def __init__(self, times: Path) -> None:
         """Begin with none."""
+        self._times = times
         self._job: Job | None = None
+        self._waiting: subprocess.Popen[str] | None = None
         self._lock = threading.Lock()
 
     @property
     def last(self) -> Job | None:
         """The work that runs, or ran last."""
         return self._job
+
+    def warm(self) -> None:
+        """Have a process at hand that has read all that work needs and waits for it, where none runs."""
+        with self._lock:
+            running = self._job is not None and self._job.state == "running"
+            if not running and (self._waiting is None or self._waiting.poll() is not None):
+                self._waiting = _process()
+
+    def close(self) -> None:
+        """Stop what is running, and the process that waits."""
+        self.stop()
+        with self._lock:
+            if self._waiting is not None:
+                _end(self._waiting)
+                self._waiting = None
 
     def start(self, kind: str, key: str, study: str, folder: Path) -> Job:
         """Start a piece of work.
@@ -105,18 +141,21 @@ class Jobs:
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(parents=True)
             write_text(folder / "study.toml", study)
-            task = ["modalkit.app.work", kind, str(folder / "study.toml"), str(folder)]
-            process = subprocess.Popen(
-                [sys.executable, "-P", "-m", *task],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                env=os.environ | child_environment() | ONE_THREAD,
-            )
-            job = Job(kind, key, folder, process, time.monotonic())
+            process, self._waiting = self._waiting, None
+            if process is None or process.poll() is not None:
+                process = _process()
+            assert process.stdin is not None
+            task = {"kind": kind, "study": str(folder / "study.toml"), "folder": str(folder)}
+            try:
+                process.stdin.write(json.dumps(task) + "\n")
+                process.stdin.close()
+            except OSError as error:
+                _end(process)
+                raise InputError(f"the work cannot be started ({error.strerror}); start it again") from error
+            before = kept(self._times, kind)
+            job = Job(kind, key, folder, process, time.monotonic(), before=before)
             self._job = job
-        threading.Thread(target=_watch, args=(job,), daemon=True).start()
+        threading.Thread(target=_watch, args=(job, self._times), daemon=True).start()
         return job
 
     def stop(self) -> None:
@@ -130,13 +169,35 @@ class Jobs:
         shutil.rmtree(job.folder, ignore_errors=True)
 
 
-def _watch(job: Job) -> None:
+def _process() -> subprocess.Popen[str]:
+    """Return a process that reads one task from its input and does it."""
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", "modalkit.app.work"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env=os.environ | child_environment() | ONE_THREAD,
+    )
+
+
+def _end(process: subprocess.Popen[str]) -> None:
+    process.kill()
+    process.wait()
+    for stream in (process.stdin, process.stdout):
+        if stream is not None:
+            stream.close()
+
+
+def _watch(job: Job, times: Path) -> None:
     """Follow the lines of a process to its end; what is no news of its own is what went wrong."""
     last = ""
     with job.process as process:
         assert process.stdout is not None
         for line in process.stdout:
             last = last if _note(job, line) else line.strip() or last
+    if job.state == "done":
+        keep(times, job.kind, job.stages, job.ended)
     if job.state == "running":
         job.error = job.error or last or f"the process ended with {job.process.returncode}"
         job.state = "failed"
@@ -152,8 +213,11 @@ def _note(job: Job, line: str) -> bool:
         return False
     if "stage" in news:
         job.stages.append((str(news["stage"]), time.monotonic() - job.begun))
+    if isinstance(one := news.get("found"), dict):
+        job.found = job.found | {str(one["name"]): one}  # a new one: it may be read meanwhile
     job.error = str(news.get("error", job.error))
     if news.get("done") and job.state == "running":
+        job.ended = time.monotonic() - job.begun
         job.state = "done"
     return True
 

@@ -79,6 +79,7 @@ FIELDS = (
     Field("Tolerance of length", ("tolerances", "length"), outlined=True),
     Field("Tolerance of width", ("tolerances", "width"), outlined=True),
     Field("Tolerance of damping", ("tolerances", "damping")),
+    Field("Exponential window", ("test", "exponential_window"), "1/s"),
     Field("Calibration", ("test", "calibration")),
     Field("Repeatability", ("test", "repeatability")),
     Field("Fluid density", ("environment", "fluid_density"), "kg/m³", outlined=True),
@@ -108,6 +109,7 @@ def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, 
     """Return what the study states, and where it has a model, pairs, MAC and what can be moved."""
     page: dict[str, Any] = {
         "text": toml_text(content),
+        "test": dict(content.get("test", {})),
         "fields": _fields(content, study),
         "effects": list(content.get("model", {}).get("effect", [])),
         "update": study.update.model_dump(),

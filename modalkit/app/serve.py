@@ -10,7 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from acquisition.errors import InputError
+from acquisition.readers import COLUMNS
 from modalkit.app.controller import Controller
+from modalkit.app.importing import STUDY, Importing
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 
@@ -25,12 +27,12 @@ def serve(
     browser: bool = True,
     ready: Callable[[str], None] = lambda address: None,
 ) -> None:
-    """Serve a study or a data file until the process is interrupted.
+    """Serve a study, a data file or a folder of text until the process is interrupted.
 
     Parameters
     ----------
     path : Path
-        The file.
+        The file or folder.
     layout : Path, optional
         Of column text.
     port : int
@@ -51,14 +53,13 @@ def serve(
         from modalkit.app.server import application
     except ImportError as error:
         raise InputError(f"the app needs {error.name}; install the extra: pip install '.[app]'") from error
-    opened = open_path(path, layout=layout)
-    controller = Controller(opened, Store.beside(path))
+    subject = subject_of(path, layout=layout)
     token = secrets.token_urlsafe(24)
     listener = _listening(port)
     own_port = int(listener.getsockname()[1])
     address = f"http://{LOOPBACK}:{own_port}/{token}/"
     config = uvicorn.Config(
-        application(controller, token=token, port=own_port),
+        application(subject, token=token, port=own_port),
         log_level="error",
         access_log=False,
         server_header=False,
@@ -70,8 +71,36 @@ def serve(
     try:
         uvicorn.Server(config).run(sockets=[listener])
     finally:
-        controller.stop()
+        subject.close()
         listener.close()
+
+
+def subject_of(path: Path, *, layout: Path | None = None) -> Controller | Importing:
+    """Return the study that a path is or begins, or the import of text that lacks a layout.
+
+    Parameters
+    ----------
+    path : Path
+        A file, or a folder: one with a ``study.toml`` is that study, any other is imported.
+    layout : Path, optional
+        Of column text.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    if path.is_dir():
+        if not (path / STUDY).is_file():
+            return Importing(path, warm=True)
+        path = path / STUDY
+    try:
+        opened = open_path(path, layout=layout)
+    except InputError as error:
+        if layout is not None or path.suffix.lower() not in COLUMNS or not path.is_file():
+            raise
+        return Importing(path.parent, path.name, str(error), warm=True)
+    return Controller(opened, Store.beside(path), warm=True)
 
 
 def _listening(port: int) -> socket.socket:

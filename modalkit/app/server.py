@@ -17,7 +17,9 @@ from starlette.routing import Route
 
 from acquisition.errors import InputError, ModalkitError
 from modalkit.app.controller import Controller
+from modalkit.app.doing import Stopped
 from modalkit.app.guard import Asgi, Guard
+from modalkit.app.importing import Importing
 from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
 from modalkit.vendor import PLOTLY, THREE, vendored
@@ -34,10 +36,14 @@ Answer = Callable[[Controller, Mapping[str, Any]], Any]
 
 PAGES: dict[str, Answer] = {
     "state": lambda controller, a: controller.state(),
+    "doing": lambda controller, a: controller.doing(),
     "hits": lambda controller, a: controller.hits(),
     "record": lambda controller, a: controller.record(str(a["point"]), int(a["hit"])),
     "frf": lambda controller, a: controller.frf(int(a["index"])),
+    "others": lambda controller, a: controller.others(int(a["index"])),
+    "measured": lambda controller, a: controller.measured(),
     "modes": lambda controller, a: controller.modes(),
+    "indicators": lambda controller, a: controller.indicators(),
     "fit": lambda controller, a: controller.fit(int(a["index"])),
     "provisional": lambda controller, a: controller.provisional(float(a["hertz"]), int(a.get("index", 0))),
     "shapes": lambda controller, a: controller.shapes(),
@@ -57,19 +63,43 @@ CHANGES: dict[str, Answer] = {
         int(a.get("index", 0)),
     ),
     "start": lambda controller, a: controller.start(str(a["kind"])),
+    "interrupt": lambda controller, a: controller.interrupt(),
     "stop": lambda controller, a: controller.stop(),
     "export": lambda controller, a: controller.export(),
 }
 """What is sent, by name."""
 
+Step = Callable[[Importing, Mapping[str, Any]], Any]
 
-def application(controller: Controller, *, token: str, port: int) -> Asgi:
+IMPORT_PAGES: dict[str, Step] = {
+    "state": lambda importing, a: importing.state(),
+    "doing": lambda importing, a: importing.doing(),
+    "import": lambda importing, a: importing.page(),
+}
+"""What is asked for as long as text is imported and no study is there."""
+
+IMPORT_CHANGES: dict[str, Step] = {
+    "proposed": lambda importing, a: importing.proposed(_names(a["files"]), _mapping(a.get("written", {}))),
+    "checked": lambda importing, a: importing.checked(_names(a["files"]), _mapping(a["form"])),
+    "write": lambda importing, a: importing.write(
+        _names(a["files"]),
+        _mapping(a["form"]),
+        title=str(a["title"]),
+        layout=str(a["layout"]),
+        study=str(a["study"]),
+    ),
+    "interrupt": lambda importing, a: importing.interrupt(),
+}
+"""What is sent as long as that is so."""
+
+
+def application(subject: Controller | Importing, *, token: str, port: int) -> Asgi:
     """Return the app as ASGI has it, behind its guard.
 
     Parameters
     ----------
-    controller : Controller
-        The study.
+    subject : Controller or Importing
+        The study, or the text that becomes one.
     token : str
         First part of every path.
     port : int
@@ -83,7 +113,7 @@ def application(controller: Controller, *, token: str, port: int) -> Asgi:
         Route("/report/{kind}", _report),
     ]
     inner = Starlette(routes=routes)
-    inner.state.controller = controller
+    inner.state.subject = subject
     return Guard(inner, token, port)
 
 
@@ -113,7 +143,7 @@ SERVED = _served()
 
 
 async def _asked(request: Request) -> Response:
-    return await _answered(request, PAGES, dict(request.query_params))
+    return await _answered(request, PAGES, IMPORT_PAGES, dict(request.query_params))
 
 
 async def _changed(request: Request) -> Response:
@@ -123,19 +153,33 @@ async def _changed(request: Request) -> Response:
         return JSONResponse({"error": "the request is not JSON"}, 400)
     if not isinstance(arguments, dict):
         return JSONResponse({"error": "the request is not an object"}, 400)
-    return await _answered(request, CHANGES, arguments)
+    return await _answered(request, CHANGES, IMPORT_CHANGES, arguments)
+
+
+def _controller(request: Request) -> Controller | None:
+    """Return the study; None as long as text is imported."""
+    subject: Controller | Importing = request.app.state.subject
+    return subject.controller if isinstance(subject, Importing) else subject
 
 
 async def _answered(
-    request: Request, answers: Mapping[str, Answer], arguments: Mapping[str, Any]
+    request: Request,
+    answers: Mapping[str, Answer],
+    steps: Mapping[str, Step],
+    arguments: Mapping[str, Any],
 ) -> Response:
-    """Return what a function of the controller returns, or its error on purpose in a line."""
-    answer = answers.get(request.path_params["name"])
+    """Return what a function of the study or of the import returns, or its error on purpose in a line."""
+    name, controller = request.path_params["name"], _controller(request)
+    answer: Callable[[Any, Mapping[str, Any]], Any] | None = (
+        steps.get(name) if controller is None else answers.get(name)
+    )
     if answer is None:
         return JSONResponse({"error": "not found"}, 404)
-    controller: Controller = request.app.state.controller
+    subject = request.app.state.subject if controller is None else controller
     try:
-        found = await run_in_threadpool(lambda: plain(answer(controller, arguments)))
+        found = await run_in_threadpool(lambda: plain(answer(subject, arguments)))
+    except Stopped:
+        return JSONResponse({"error": "stopped; nothing was changed, and this page is not complete"}, 422)
     except ModalkitError as error:
         return JSONResponse({"error": str(error)}, 422)
     except (KeyError, TypeError, ValueError) as error:
@@ -144,8 +188,9 @@ async def _answered(
 
 
 async def _report(request: Request) -> Response:
-    controller: Controller = request.app.state.controller
-    page = await run_in_threadpool(controller.report, request.path_params["kind"])
+    controller = _controller(request)
+    kind = request.path_params["kind"]
+    page = None if controller is None else await run_in_threadpool(controller.report, kind)
     if page is None:
         return Response("there is no report of this state yet", 404)
     return HTMLResponse(page, headers={"content-security-policy": SANDBOX})
@@ -155,6 +200,12 @@ def _mapping(value: Any) -> Mapping[str, Any]:
     if not isinstance(value, dict):
         raise InputError("an object of names and values is needed")
     return value
+
+
+def _names(value: Any) -> list[str]:
+    if not isinstance(value, list):
+        raise InputError("a list of names is needed")
+    return [str(name) for name in value]
 
 
 def _numbers(value: Any) -> dict[str, float]:

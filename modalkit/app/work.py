@@ -1,15 +1,20 @@
-"""The long work of the app, in a process of its own: ``python -m modalkit.app.work KIND STUDY FOLDER``.
+"""The long work of the app, in a process of its own: ``python -m modalkit.app.work``.
 
+It reads what all kinds of work need, then waits for one line of JSON on its input: ``kind``, ``study``, ``folder``.
 It does what the command of that name does to the study file, writes what the command writes, and prints one line of
 JSON for every stage. A process can be stopped at once; what it had not finished is not there.
 """
 
 from __future__ import annotations
 
+import importlib
 import json
+import math
 import shlex
 import sys
+import tomllib
 from collections.abc import Callable
+from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,11 +25,22 @@ from modalkit.output.whole import plain, write_text
 
 if TYPE_CHECKING:
     from modalkit.report.document import Document
+    from updating.steps import SingleCause
 
 RESULT, REPORT, DRAWINGS = "result.json", "report.html", "drawings.json"
 
 DRAWN = ("gap", "causes", "place", "closing", "frfs", "factors", "frac", "correlations")
 """Charts of the report that the page draws too; those of the test stand on pages of their own."""
+
+NEEDED = (
+    "modalkit.report.diagnosis",
+    "modalkit.report.updating",
+    "modalkit.output.documents",
+    "modalkit.workflow.diagnosis",
+    "modalkit.workflow.update",
+    "scipy.optimize",
+)
+"""Modules that take long to load and that most work needs."""
 
 Progress = Callable[[str], None]
 
@@ -32,24 +48,28 @@ Progress = Callable[[str], None]
 def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Diagnose a study and write the report."""
     from acquisition.quantities import bare_p, probability
-    from modalkit.app.acceptance import acceptable
+    from modalkit.app.acceptance import offer
     from modalkit.output.documents import diagnosis_document
     from modalkit.output.summary import answers, separates
     from modalkit.output.words import answer, parameters
-    from modalkit.report.diagnosis import reported
+    from modalkit.report.diagnosis import diagnosis_report
     from modalkit.report.page import page
     from modalkit.study.read import read_study
     from modalkit.workflow.case import open_study
     from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
+    from updating.nominal import predictor_of
 
     progress("reading and identifying")
-    session = open_study(read_study(path))
-    found = diagnose_studies([session], progress=progress)
+    study = read_study(path)
+    session = open_study(study)
+    found = diagnose_studies([session], progress=progress, found=_found)
     progress("writing the report")
     repeated = shlex.join(["modalkit", "diagnose", path.name])
-    whole = reported(found, [session], when=datetime.now().astimezone(), command=repeated)
+    whole = diagnosis_report(found, [session], when=datetime.now().astimezone(), command=repeated)
     write_text(folder / REPORT, page(whole))
     _draw(folder, whole)
+    predictor = predictor_of(session.case)
+    there = [name for name, _ in session.case.accepted]
     return {
         "answer": answer(found),
         "summary": answers(found),
@@ -58,7 +78,7 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
                 "probability": probability(row.probability),
                 "parameters": parameters(row),
                 "p": bare_p(row.p_value),
-                "acceptable": acceptable(row.effects),
+                **asdict(offer(row, predictor, there, since_baseline=study.baseline is not None)),
             }
             for row in found.ranking
         ],
@@ -78,9 +98,10 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
 def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Update the model of a study and write the report."""
     from acquisition.quantities import percent
+    from modalkit.app.typed_units import parameter_rows
     from modalkit.output.update import to_json
     from modalkit.report.page import page
-    from modalkit.report.updating import reported
+    from modalkit.report.updating import update_report
     from modalkit.study.read import read_study
     from modalkit.workflow.case import open_study
     from modalkit.workflow.update import update_studies
@@ -91,15 +112,18 @@ def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     found = update_studies([session])
     progress("writing the report")
     repeated = shlex.join(["modalkit", "update", path.name])
-    whole = reported(found, [session], when=datetime.now().astimezone(), command=repeated)
+    whole = update_report(found, [session], when=datetime.now().astimezone(), command=repeated)
     write_text(folder / REPORT, page(whole))
     _draw(folder, whole)
     before, after = (percent(found.rms_percent(when)) for when in ("before", "after"))
     state = "converged" if found.converged else "NOT converged"
+    document = to_json(found)
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
     return {
         "answer": f"{before} → {after} r.m.s., {state} after {found.iterations} iterations",
         "text": found.report(),
-        "document": to_json(found),
+        "rows": parameter_rows(content, plain(document["parameters"])),
+        "document": document,
     }
 
 
@@ -167,10 +191,29 @@ def run(kind: str, path: Path, folder: Path) -> int:
     return 0
 
 
+def _found(one: SingleCause) -> None:
+    """Print a single cause as it is compared: its evidence over that of no cause in powers of ten, its fit."""
+    from acquisition.quantities import bare_p
+
+    power = one.log_evidence / math.log(10)
+    _line(found=plain({"name": one.name, "power": power, "p": bare_p(one.p_value)}))
+
+
 def _line(**what: Any) -> None:
     sys.stdout.write(json.dumps(what) + "\n")
     sys.stdout.flush()
 
 
+def wait() -> int:
+    """Load what work needs, wait for a task, do it; an input that ends without one is no error."""
+    for name in NEEDED:
+        importlib.import_module(name)
+    line = sys.stdin.readline()
+    if not line.strip():
+        return 0
+    task = json.loads(line)
+    return run(task["kind"], Path(task["study"]), Path(task["folder"]))
+
+
 if __name__ == "__main__":
-    sys.exit(run(sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])))
+    sys.exit(wait())

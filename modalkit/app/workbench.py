@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
+from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 
 from acquisition import InputError, UffContent
@@ -10,13 +13,17 @@ from identification import ModalModel
 from identification.identify import Provisional
 from identification.pole_reasons import Origins, pole_origins
 from modalkit.app.digests import digest_of
+from modalkit.app.doing import Doing
 from modalkit.app.kept import Kept
 from modalkit.study.read import Study, UpdateTable
 from modalkit.workflow.case import Session, modes_in_band, open_study, processing_of
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.files import read_files
-from modalkit.workflow.identification import Processed, from_content
+from modalkit.workflow.identification import from_content
+from modalkit.workflow.judged_hits import Proposals, proposals_of
+from modalkit.workflow.processed import Processed
 from modalkit.workflow.processing_options import ProcessingOptions
+from modalkit.workflow.stated_places import with_places
 from updating.correlation.correlate import Correlation, correlate
 from updating.nominal import predictor_of
 from updating.prediction.predict import Predictor
@@ -29,16 +36,26 @@ class Workbench:
     """Results by the part of a study that they depend on.
 
     Nothing in it can be changed from outside; what it returns is what the command line prints of the same study.
+
+    Parameters
+    ----------
+    doing : Doing
+        To which each step is named as it is computed.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, doing: Doing) -> None:
         """Begin with nothing computed."""
-        self._contents: Kept[UffContent] = Kept(2)
-        self._processed: Kept[Processed] = Kept(SEVERAL)
-        self._modes: Kept[ModalModel | Modes] = Kept(4 * SEVERAL)
-        self._sessions: Kept[Session] = Kept(SEVERAL)
-        self._predictors: Kept[Predictor] = Kept(SEVERAL)
-        self._correlations: Kept[Correlation] = Kept(SEVERAL)
+
+        def step(name: str) -> Callable[[], AbstractContextManager[None]]:
+            return lambda: doing.step(name)
+
+        self._contents: Kept[UffContent] = Kept(2, step("reading the files"))
+        self._proposals: Kept[Proposals] = Kept(2, step("judging the hits"))
+        self._processed: Kept[Processed] = Kept(SEVERAL, step("estimating FRFs"))
+        self._modes: Kept[ModalModel | Modes] = Kept(4 * SEVERAL, step("identifying the modes"))
+        self._sessions: Kept[Session] = Kept(SEVERAL, step("placing the test on the model"))
+        self._predictors: Kept[Predictor] = Kept(SEVERAL, step("solving the model"))
+        self._correlations: Kept[Correlation] = Kept(SEVERAL, step("pairing the modes"))
 
     def processed(self, study: Study) -> Processed | None:
         """Return the FRFs of a study's test; None where it has modes alone.
@@ -52,7 +69,16 @@ class Workbench:
             return None
         key = self._test_key(study)
         files, _, processing = key
-        return self._processed.get(key, lambda: from_content(self._content(*key), files, processing))
+        return self._processed.get(
+            key,
+            lambda: from_content(self._content(*key), files, processing, self._proposals_of(*key)),
+        )
+
+    def _proposals_of(self, files: tuple[Path, ...], digest: str, processing: ProcessingOptions) -> Proposals:
+        """Return what is proposed of the hits, which no decision on them changes."""
+        common = replace(processing, use=(), leave=(), estimator="H1")
+        content = self._content(files, digest, processing)
+        return self._proposals.get((files, digest, common), lambda: proposals_of(content, processing))
 
     def _test_key(self, study: Study) -> tuple[tuple[Path, ...], str, ProcessingOptions]:
         """Return what the FRFs of a test depend on: its files, what they hold, how they are taken."""
@@ -83,11 +109,19 @@ class Workbench:
         if processed is None:
             return _existing(study)
         test = study.test
-        key = (self._test_key(study), test.band, test.order, tuple(test.add), tuple(test.drop))
         return self._modes.get(
-            key,
+            self._modes_key(study),
             lambda: processed.identify(band=test.band, order=test.order, add=test.add, drop=test.drop),
         )
+
+    def has_modes(self, study: Study) -> bool:
+        """Return whether the modes of a study need no computation."""
+        return not study.test.files or self._modes_key(study) in self._modes
+
+    def _modes_key(self, study: Study) -> Hashable:
+        """Return what the modes of a test depend on."""
+        test = study.test
+        return self._test_key(study), test.band, test.order, tuple(test.add), tuple(test.drop)
 
     def identified(self, study: Study) -> ModalModel:
         """Return the modes of a test that was identified here.
@@ -103,8 +137,17 @@ class Workbench:
         return modes
 
     def modal(self, study: Study) -> ModalData:
-        """Return the modes as a plain record."""
-        return self.modes(study).modal
+        """Return the modes as a plain record, points where the study or its model places them.
+
+        Raises
+        ------
+        StudyError
+            If a place is stated of a point that the test does not have.
+        """
+        modal, test = self.modes(study).modal, study.test
+        if study.model is None:
+            return with_places(modal, test)[0]
+        return with_places(modal, test, study.axes(test), study.spec())[0]
 
     def origins(self, study: Study) -> Origins:
         """Return what became of every pole of the chart."""
@@ -153,8 +196,9 @@ class Workbench:
 
 
 def _study_key(study: Study) -> tuple[str, str]:
-    """Return what test beside model depends on: all of the study but its table of the update, and its files."""
-    tables = study.model_copy(update={"update": UpdateTable()}).model_dump_json()
+    """Return what test beside model depends on: all of the study but update and drawn lines, and its files."""
+    test = study.test.model_copy(update={"lines": []})
+    tables = study.model_copy(update={"update": UpdateTable(), "test": test}).model_dump_json()
     return tables, digest_of(study.inputs()[1:])
 
 

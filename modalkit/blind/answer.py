@@ -52,6 +52,43 @@ class Row:
     points: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class Stated:
+    """The mechanism that a diagnosis leads with.
+
+    Parameters
+    ----------
+    channel, extent : str
+        What is changed, and whether all over, at a place, at supports or in the measuring chain.
+    locations : tuple of (x, y)
+        Where it is; empty where it has no place [m].
+    low, high : (x, y) or None
+        95 % interval of the first of them; None likewise [m].
+    probability : float
+        That it is so, given that there is a cause [-].
+    """
+
+    channel: str
+    extent: str
+    locations: tuple[tuple[float, float], ...] = ()
+    low: tuple[float, float] | None = None
+    high: tuple[float, float] | None = None
+    probability: float = NAN
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as the contract has it."""
+        places = [[x, y, 0.0] for x, y in self.locations]
+        ends = {"location_low95": self.low, "location_high95": self.high}
+        return {
+            "channel": self.channel,
+            "extent": self.extent,
+            "location": places[0] if places else None,
+            "locations": places,
+            **{name: None if at is None else [*at, 0.0] for name, at in ends.items()},
+            "probability": _or_none(self.probability),
+        }
+
+
 @dataclass(frozen=True, eq=False)
 class Answer:
     """What a diagnosis states.
@@ -78,6 +115,12 @@ class Answer:
         Share of the gap that it states as closed [%].
     metric : str
         What the errors are of: frequency, damping, frf or combined.
+    level : str
+        At which level it is certain: story, mechanism, or empty for neither.
+    mechanism : Stated or None
+        The mechanism that it leads with; None where it has none.
+    has_levels : bool
+        Whether it states levels at all; those of earlier versions do not.
     """
 
     verdict: str
@@ -90,6 +133,9 @@ class Answer:
     held_out: dict[str, float] = field(default_factory=dict)
     closed: Estimate | None = None
     metric: str = ""
+    level: str = ""
+    mechanism: Stated | None = None
+    has_levels: bool = False
 
     @property
     def best(self) -> Row | None:
@@ -119,6 +165,7 @@ class Answer:
             },
             "cause": {
                 "verdict": self.verdict,
+                **self._levels(),
                 "sets": [sorted(s) for s in self.sets],
                 "ranking": [_row_json(row, stated=row.effects in self.sets) for row in self.ranking],
             },
@@ -128,6 +175,12 @@ class Answer:
                 "closed_percent": None if self.closed is None else _estimate_json(self.closed),
             },
         }
+
+    def _levels(self) -> dict[str, Any]:
+        if not self.has_levels:
+            return {}
+        leading = None if self.mechanism is None else self.mechanism.to_json()
+        return {"level": self.level or None, "mechanism": leading}
 
 
 def read_answer(document: Mapping[str, Any]) -> Answer:
@@ -175,6 +228,23 @@ def _read(document: Mapping[str, Any]) -> Answer:
         held_out={name: _number(v) for name, v in held_out.items() if name != "points"},
         closed=None if closed is None else _estimate(closed),
         metric=str(shrink.get("metric", "")),
+        level=cause.get("level") or "",
+        mechanism=_stated(cause.get("mechanism")),
+        has_levels="level" in cause,
+    )
+
+
+def _stated(mechanism: Mapping[str, Any] | None) -> Stated | None:
+    if mechanism is None:
+        return None
+    low, high = (mechanism.get(f"location_{end}95") for end in ("low", "high"))
+    return Stated(
+        channel=str(mechanism["channel"]),
+        extent=str(mechanism["extent"]),
+        locations=tuple((float(p[0]), float(p[1])) for p in mechanism["locations"]),
+        low=None if low is None else (float(low[0]), float(low[1])),
+        high=None if high is None else (float(high[0]), float(high[1])),
+        probability=_number(mechanism["probability"]),
     )
 
 

@@ -74,7 +74,7 @@ def run_blind(
     announce : callable, optional
         Called with the trial's number and commitment before its diagnosis begins.
     progress : callable, optional
-        Called with each outcome, those of the store first, then in the order in which the trials end.
+        Called with each outcome, those of the store first, then as the trials end.
     documents : bool
         Whether the result holds the diagnoses as JSON, which no score needs; the store holds them always.
 
@@ -90,26 +90,51 @@ def run_blind(
     InputError
         If the store belongs to another run, or the scheduler cannot be reached.
     """
-    if trials < 1 or workers < 1:
-        raise StudyError(f"{trials} trials with {workers} workers; both must be at least 1")
-    if scheduler is not None:
-        check_scheduler(scheduler)
-    plan = plan or DrawRanges()
-    outcomes: dict[int, Outcome] = {}
-    with ExitStack() as stack:
-        kept = None
-        if store is not None:
-            kept = stack.enter_context(Store(store, seed=seed, plan=plan, resume=resume))
-        found = [outcome for i, outcome in sorted(kept.found.items()) if i < trials] if kept else []
-        missing = sorted(set(range(trials)) - {outcome.index for outcome in found})
-        publish = _publisher(kept, announce)
-        running = _running(missing, seed, plan, workers, scheduler, diagnose, publish)
-        coming = stack.enter_context(closing(_stored(running, kept)))
-        for outcome in chain(found, coming):
+    _check(trials, workers, scheduler)
+    plan, outcomes = plan or DrawRanges(), dict[int, Outcome]()
+    every = _coming(trials, seed, plan, workers, scheduler, store, resume, diagnose, announce)
+    with closing(every):
+        for outcome in every:
             outcomes[outcome.index] = outcome if documents else replace(outcome, document=None)
             if progress is not None:
                 progress(outcome)
     return BlindResult(seed, plan, tuple(outcomes[i] for i in range(trials)))
+
+
+def _check(trials: int, workers: int, scheduler: str | None) -> None:
+    """Refuse a run without trials or workers, or with a scheduler that cannot be reached."""
+    if trials < 1 or workers < 1:
+        raise StudyError(f"{trials} trials with {workers} workers; both must be at least 1")
+    if scheduler is not None:
+        check_scheduler(scheduler)
+
+
+def _coming(
+    trials: int,
+    seed: int,
+    plan: DrawRanges,
+    workers: int,
+    scheduler: str | None,
+    store: Path | None,
+    resume: bool,
+    diagnose: Diagnose | None,
+    announce: Announce | None,
+) -> Generator[Outcome, None, None]:
+    """Yield the outcomes that a store holds, then the others as they end."""
+    with ExitStack() as stack:
+        kept = None
+        if store is not None:
+            kept = stack.enter_context(Store(store, seed=seed, plan=plan, resume=resume))
+        found, missing = _known(kept, trials)
+        publish = _publisher(kept, announce)
+        running = _running(missing, seed, plan, workers, scheduler, diagnose, publish)
+        yield from chain(found, stack.enter_context(closing(_stored(running, kept))))
+
+
+def _known(store: Store | None, trials: int) -> tuple[list[Outcome], list[int]]:
+    """Return the outcomes that a store holds already, and the numbers of the trials that are missing."""
+    found = [] if store is None else [one for i, one in sorted(store.found.items()) if i < trials]
+    return found, sorted(set(range(trials)) - {outcome.index for outcome in found})
 
 
 def _publisher(store: Store | None, announce: Announce | None) -> Announce:

@@ -12,8 +12,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 from modalkit.blind.reading import Scales, read, shape_part
 from modalkit.simulator.hidden import HiddenEffect, Values, effects_of
-from modalkit.simulator.hidden.chain import hit_points
-from modalkit.simulator.setup import Setup
+from modalkit.simulator.setup import Setup, hit_points
 
 _FAINT = 0.3
 """Strength at which effects are linearised; a clear one would bend what is meant to be straight [-]."""

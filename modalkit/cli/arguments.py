@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from acquisition.errors import InputError
+from acquisition.errors import InputError, cannot_open
 
 HELP = ("--help", "-h")
 
@@ -98,8 +98,7 @@ def _check_there(path: Path) -> None:
     try:
         path.stat()
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot be opened ({reason}); check the path") from None
+        raise cannot_open(path, error) from None
 
 
 def _check_band(band: Sequence[str]) -> None:

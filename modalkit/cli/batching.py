@@ -7,7 +7,6 @@ from typing import Annotated
 
 import pandas as pd
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from acquisition.display import counted
 from acquisition.errors import EstimationError
@@ -20,9 +19,11 @@ from modalkit.batch import (
     tables,
     write_tables,
 )
-from modalkit.cli.common import bar_of, check_folder, check_workers, out, progress, read_by, show_table
+from modalkit.cli.common import check_folder, check_workers, out, read_by, show_table
+from modalkit.cli.progress import working
 from modalkit.output.destinations import check_outputs, json_of, store_of
 from modalkit.output.whole import write_json
+from modalkit.workflow.stages import SEARCHING, STUDIES
 
 PART = json_of("modalkit.part/1")
 _SHOWN = ["study", "verdict", "effects", "probability", "gap_before_percent", "gap_after_percent", "f1_hz"]
@@ -54,21 +55,19 @@ def batch(
     places = [*table_places(output), (store, store_of("modalkit.batchrun/1"))]
     check_outputs(*places)
     check_folder(json_dir)
-    with progress.status("searching for studies"):
+    with working(SEARCHING):
         studies = find_studies(folder)
     parts = [] if json_dir is None else [_part_place(json_dir, one.name) for one in studies]
     there = [(path, PART) for path in parts if path.exists()]
     check_outputs(*places, *there, reads=[path for one in studies for path in one.inputs])
-    columns = (TextColumn("studies"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with bar_of(*columns) as bar:
-        task = bar.add_task("studies", total=len(studies))
+    with working(STUDIES) as work:
         result = run_batch(
             studies,
             workers=workers,
             scheduler=scheduler,
             store=store,
             resume=resume,
-            progress=lambda _: bar.advance(task),
+            progress=work.counter(len(studies)),
         )
     _show(result)
     if not result.worked:

@@ -8,17 +8,18 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from acquisition.display import counted
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, DrawRanges, check_store, run_blind, score
-from modalkit.cli.common import bar_of, check_folder, check_workers, out, progress, read_by, show_figures
+from modalkit.cli.common import check_folder, check_workers, names_of, out, read_by, show_figures
 from modalkit.cli.options import Figures, Report
+from modalkit.cli.progress import progress, working
 from modalkit.cli.reporting import report_wanted
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
 from modalkit.output.destinations import check_outputs, json_of, store_of
 from modalkit.output.whole import write_json
+from modalkit.workflow.stages import TRIALS
 
 _SEED_BITS = 63
 _MOST_TRIALS = 10_000_000  # their numbers alone take 80 MB
@@ -55,10 +56,12 @@ LeaveOut = Annotated[
     bool, typer.Option("--leave-out", help="remove the true effect from the library in every trial")
 ]
 Real = Annotated[
-    bool, typer.Option("--real", help="real structures with their cause withheld, instead of trials")
+    bool, typer.Option("--real", help="diagnose real structures whose cause is withheld, instead of trials")
 ]
 Data = Annotated[Path | None, typer.Option(help="folder of measured data for --real")]
-Check = Annotated[Path | None, typer.Option(help="check the seals of a stored run; run nothing")]
+Check = Annotated[
+    Path | None, typer.Option(help="check the commitments of a stored run without running trials")
+]
 Json = Annotated[Path | None, typer.Option("--json", help="file for the score as JSON")]
 Markdown = Annotated[
     Path | None, typer.Option(help="Markdown page to put the score into, between its marks or at its end")
@@ -118,23 +121,15 @@ def blind(
     elif study is not None:
         from modalkit.cli.planning import plan_study
 
-        seed = 1 if seed is None else seed
         plan_study(
-            study,
-            trials=trials or 0,
-            seed=seed,
-            workers=workers,
-            json=json,
-            figures=figures,
-            report=report,
-        )
+            study, trials=trials or 0, seed=1 if seed is None else seed, workers=workers, json=json,
+            figures=figures, report=report,
+        )  # fmt: skip
     else:
-        plan = DrawRanges(
-            kinds=_names(kinds) or DrawRanges().kinds, effects=_names(effects), leave_out=leave_out
-        )
+        named = names_of(kinds) or DrawRanges().kinds
+        plan = DrawRanges(kinds=named, effects=names_of(effects), leave_out=leave_out)
         count, drawn = 60 if trials is None else trials, _seed(seed, store, resume)
-        result = _run(count, drawn, plan, workers, scheduler, store, resume)
-        _show(result, json, markdown, figures)
+        _show(_run(count, drawn, plan, workers, scheduler, store, resume), json, markdown, figures)
 
 
 def _show(result: BlindResult, json: Path | None, markdown: Path | None, figures: Path | None) -> None:
@@ -149,10 +144,6 @@ def _show(result: BlindResult, json: Path | None, markdown: Path | None, figures
         write_markdown(markdown, table)
         out.print(f"written: {markdown}", markup=False)
     show_figures(figures, lambda: score_figures(table))
-
-
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def _is_given(value: object) -> bool:
@@ -210,12 +201,10 @@ def _run(
     store: Path | None,
     resume: bool,
 ) -> BlindResult:
-    columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with bar_of(*columns) as bar:
-        task = bar.add_task("trials", total=trials)
+    with working(TRIALS) as work:
         return run_blind(
             trials, seed, plan=plan, workers=workers, scheduler=scheduler, store=store, resume=resume,
-            progress=lambda _: bar.advance(task), documents=False,
+            progress=work.counter(trials), documents=False,
         )  # fmt: skip
 
 

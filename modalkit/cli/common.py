@@ -6,24 +6,19 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import (
-    BarColumn,
-    Progress,
-    ProgressColumn,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-)
 from rich.table import Table
 
+from acquisition.display import formats
 from acquisition.errors import InputError
 from acquisition.warned import in_order
+from modalkit.cli.progress import working
+from modalkit.workflow.stages import DRAWING
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +28,6 @@ _MOST_WORKERS = 1000
 _PIPE_WIDTH = 160  # characters a table may take where no terminal states its width
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
-progress = Console(stderr=True)
 
 
 def is_study(path: Path) -> bool:
@@ -41,41 +35,9 @@ def is_study(path: Path) -> bool:
     return path.suffix.lower() == ".toml"
 
 
-@contextmanager
-def working(what: str) -> Iterator[None]:
-    """Show that something is going on, on stderr and only in a terminal."""
-    with progress.status(what):
-        yield
-
-
-@contextmanager
-def bar_of(*columns: ProgressColumn, transient: bool = False) -> Iterator[Progress]:
-    """Show a progress bar on stderr in a terminal; elsewhere it does not start: rich 14 writes an empty line."""
-    bar = Progress(*columns, console=progress, transient=transient, disable=not progress.is_terminal)
-    with bar if progress.is_terminal else nullcontext(bar):
-        yield bar
-
-
-@contextmanager
-def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
-    """Show a progress bar while files are read, and after that what is done with them.
-
-    Parameters
-    ----------
-    then : str
-        What is done once the files are read.
-    """
-    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
-    with bar_of(*columns, transient=True) as bar:
-        task = bar.add_task("reading", total=1.0)
-
-        def stated(part: float) -> None:
-            if part >= 1.0:
-                bar.update(task, description=then, total=None)
-            else:
-                bar.update(task, completed=part)
-
-        yield stated
+def names_of(text: str) -> tuple[str, ...]:
+    """Return the names in a list with commas between them."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def read_by(files: Sequence[Path], *more: Path | None) -> Iterator[Path]:
@@ -142,7 +104,11 @@ def check_workers(workers: int) -> None:
 
 
 def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] | None = None) -> None:
-    """Print a table; columns of numbers to the right, with the given number of decimals."""
+    """Print a table; columns of numbers to the right, with the given number of decimals.
+
+    A column with a standard deviation behind it has the decimals that this determines, whatever is given.
+    """
+    known = formats(frame)
     table = Table(
         title=escape(title) or None, title_justify="left", box=None, pad_edge=False, header_style="bold"
     )
@@ -154,17 +120,20 @@ def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] |
         table.add_column(escape(str(column)), justify="right" if numeric else "left")
     for index, row in zip(frame.index, frame.itertuples(index=False), strict=True):
         cells = [
-            _cell(value, (digits or {}).get(str(c))) for c, value in zip(frame.columns, row, strict=True)
+            _cell(value, (digits or {}).get(str(c)), known.get(str(c)))
+            for c, value in zip(frame.columns, row, strict=True)
         ]
         table.add_row(*map(escape, [str(index)] if named else []), *map(escape, cells))
     out.print(table)
     out.print()
 
 
-def _cell(value: Any, digits: int | None) -> str:
+def _cell(value: Any, digits: int | None, known: Callable[[float], str] | None = None) -> str:
     if isinstance(value, float):
         if math.isnan(value):
             return "-"
+        if known is not None:
+            return known(value)
         return f"{value:.{digits}f}" if digits is not None else f"{value:.4g}"
     return str(value)
 
@@ -204,9 +173,15 @@ def show_figures(folder: Path | None, build: Callable[[], dict[str, Any]]) -> No
 
 
 @contextmanager
-def drawing() -> Iterator[None]:
-    """State that figures are drawn, as on every machine: a ``matplotlibrc`` in the current folder is not followed."""
+def drawing(stage: str = DRAWING) -> Iterator[None]:
+    """Show that figures are drawn, as on every machine: a ``matplotlibrc`` in the current folder is not followed.
+
+    Parameters
+    ----------
+    stage : str
+        What is shown.
+    """
     from matplotlib import style
 
-    with working("drawing"), style.context("default", after_reset=True):
+    with working(stage), style.context("default", after_reset=True):
         yield

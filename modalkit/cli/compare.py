@@ -13,23 +13,16 @@ from acquisition.display import counted
 from acquisition.errors import InputError
 from acquisition.quantities import percent
 from identification import Correlation as Comparison
-from modalkit.cli.common import (
-    check_folder,
-    is_study,
-    out,
-    read_by,
-    show_figures,
-    show_table,
-    show_warnings,
-    working,
-)
+from modalkit.cli.common import check_folder, is_study, out, read_by, show_figures, show_table, show_warnings
 from modalkit.cli.options import Figures
+from modalkit.cli.progress import working
 from modalkit.output.correlation import comparison_document, correlation_document
 from modalkit.output.destinations import Kind, check_outputs, json_of, text_of
 from modalkit.output.whole import write_json, write_text
 from modalkit.study.read import read_study
 from modalkit.workflow import comparison as comparing
 from modalkit.workflow.case import Session, open_study
+from modalkit.workflow.stages import PREPARING, TABLES
 from updating.correlation.correlate import Correlation
 from updating.correlation.correlate import correlate as compare
 from updating.prediction.predict import Predictor
@@ -72,7 +65,7 @@ def correlate(
         raise InputError(
             f"{study}: is not a study; name a study file, or a second test to compare this one with"
         )
-    with working("reading and identifying"):
+    with working(PREPARING):
         session = open_study(read_study(study), with_baseline=False)
     identified = session.identified
     result = compare(session.case, None if identified is None else identified.frfs)
@@ -108,7 +101,7 @@ def _named_frac(frac: pd.DataFrame) -> pd.DataFrame:
 
 def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path | None) -> None:
     """Lay two tests side by side."""
-    with working("reading and identifying"):
+    with working(PREPARING):
         found = comparing.compare(first, second)
     names = {"test": "first", "test [Hz]": "first [Hz]", "model": "second", "model [Hz]": "second [Hz]"}
     table = found.table().rename(columns=names | {"error [%]": "difference [%]"})
@@ -141,17 +134,20 @@ def tables(
     form: Annotated[TableFormat, typer.Option("--format", help="md, csv or latex")] = TableFormat.md,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="file to write")] = None,
     fluid: Annotated[
-        bool, typer.Option("--fluid", help="paper A's wet tables with computed water, every variant")
+        bool,
+        typer.Option(
+            "--fluid", help="paper A's tables in water with every variant of the computed added mass"
+        ),
     ] = False,
     figures: Figures = None,
 ) -> None:
-    """Compute the papers' tables with the whole chain, next to the published values."""
+    """Recompute the tables of two papers from the sample data, beside the published values."""
     from modalkit.papers.render import render
     from modalkit.papers.tables import fluid_work, work
 
     check_outputs((output, _tables_as(form)))
     check_folder(figures)
-    with working("making the tables"):
+    with working(TABLES):
         made = fluid_work(paper) if fluid else work(paper)
         text = render(made.tables(), form.value)
     if output is None:

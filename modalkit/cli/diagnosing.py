@@ -13,25 +13,28 @@ from acquisition.quantities import percent
 from modalkit.cli.common import (
     check_folder,
     check_once,
+    names_of,
     out,
     read_by,
     show_figures,
     show_table,
     show_warnings,
-    working,
 )
 from modalkit.cli.options import Figures, Report
+from modalkit.cli.progress import working
 from modalkit.cli.reporting import now, report_wanted, save_report, this_command
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.documents import diagnosis_document
+from modalkit.output.how_far import without_cause
 from modalkit.output.library import effects_document, effects_table
 from modalkit.output.schemas.effects import EffectEntry
-from modalkit.output.summary import of_no_library_text, searched_text, separates, summary_text
+from modalkit.output.summary import NO_CAUSE, of_no_library_text, searched_text, separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.study.rules import read_rules
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
+from modalkit.workflow.stages import PREPARING
 from updating import Diagnosis
 from updating.diagnosis.answer.rules import DEFAULT_RULES
 
@@ -60,10 +63,16 @@ def diagnose(
     _check_places(studies, rules, json, report, figures)
     check_once(studies)
     decided_by = DEFAULT_RULES if rules is None else read_rules(rules)
-    with working("reading and identifying"):
+    with working(PREPARING) as work:
         sessions = [open_study(read_study(path)) for path in studies]
-    with working("comparing the effects"):
-        diagnosis = diagnose_studies(sessions, _names(shared), _names(without), rules=decided_by)
+        diagnosis = diagnose_studies(
+            sessions,
+            names_of(shared),
+            names_of(without),
+            rules=decided_by,
+            progress=work.begin,
+            part=work.done,
+        )
     if json is not None:  # first, for a reader of what is printed may close the pipe
         write_json(json, diagnosis_document(diagnosis, warnings_of(sessions)))
     show_diagnosis(diagnosis, *sessions)
@@ -71,10 +80,6 @@ def diagnose(
         out.print(f"written: {json}", markup=False)
     if report is not None or figures is not None:
         _draw(diagnosis, sessions, report, figures)
-
-
-def _names(listed: str) -> tuple[str, ...]:
-    return tuple(name.strip() for name in listed.split(",") if name.strip())
 
 
 def _check_places(
@@ -107,7 +112,7 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     modes = gap.modes if len(sessions) > 1 else gap.modes.drop(columns="study", errors="ignore")
     show_table(modes, f"Gap: {percent(gap.rms_percent)} r.m.s. over {len(gap.modes)} modes", digits=digits)
     show_table(
-        diagnosis.table().head(10).reset_index(),
+        _explanations(diagnosis),
         "Explanations, most probable first",
         digits={"probability": 4},
     )
@@ -126,6 +131,16 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
 
 
+def _explanations(diagnosis: Diagnosis) -> pd.DataFrame:
+    """Return the most probable rows of the ranking, before them that of no cause where this is the answer."""
+    rows = diagnosis.table().head(10).reset_index()
+    if diagnosis.verdict != "none":
+        return rows
+    chance = float(f"{diagnosis.p_value:.3g}")
+    first = dict(zip(rows.columns, (NO_CAUSE, without_cause(diagnosis), chance, ""), strict=True))
+    return pd.concat([pd.DataFrame([first]), rows], ignore_index=True)
+
+
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:
     """Draw a diagnosis, and the tests it rests on."""
     from modalkit.figures.diagnosis.all import drawings
@@ -135,7 +150,9 @@ def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any
 
 def effects(
     json: Annotated[Path | None, typer.Option("--json", help="file for the library as JSON")] = None,
-    table: Annotated[bool, typer.Option("--table", help="print one row each, in Markdown")] = False,
+    table: Annotated[
+        bool, typer.Option("--table", help="print a Markdown table with one row per effect")
+    ] = False,
 ) -> None:
     """List the effects of the library, with priors, signatures and the tests that separate them."""
     check_outputs((json, json_of("modalkit.effects/1")))

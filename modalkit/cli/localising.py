@@ -10,14 +10,16 @@ import typer
 from acquisition.display import grouped, with_reasons
 from acquisition.errors import InputError
 from acquisition.quantities import probability
-from modalkit.cli.common import check_folder, out, read_by, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import check_folder, out, read_by, show_figures, show_table, show_warnings
 from modalkit.cli.options import Figures
+from modalkit.cli.progress import working
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.localisation import localisation_document
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from modalkit.workflow.localisation import localise_study
+from modalkit.workflow.stages import PREPARING, REGIONS
 from updating.localisation import KINDS, METHODS, Localisation
 
 
@@ -46,9 +48,9 @@ def localise(
             raise InputError(f"--method {name}: write one of {', '.join(METHODS)}")
     check_outputs((json, json_of("modalkit.localisation/1")), reads=read_by([study]))
     check_folder(figures)
-    with working("reading and identifying"):
+    with working(PREPARING):
         session = open_study(read_study(study))
-    with working("comparing the regions"):
+    with working(REGIONS):
         found = localise_study(session, methods=method or tuple(METHODS), kind=chosen)
     _show(found)
     if json is not None:

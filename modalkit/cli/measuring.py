@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from acquisition import (
-    Dof,
     InputError,
     StudyError,
     UffContent,
@@ -21,19 +20,9 @@ from acquisition import (
     written_as_uff,
 )
 from acquisition.columns.proposal import BEGINS
-from acquisition.display import counted, named_files
+from acquisition.display import named_files
 from acquisition.warned import in_order
-from modalkit.cli.common import (
-    check_folder,
-    is_study,
-    out,
-    read_by,
-    reading,
-    show_figures,
-    show_table,
-    show_warnings,
-    working,
-)
+from modalkit.cli.common import check_folder, is_study, out, read_by, show_figures, show_table, show_warnings
 from modalkit.cli.options import (
     Add,
     Band,
@@ -52,6 +41,7 @@ from modalkit.cli.options import (
     WindowOn,
     processing,
 )
+from modalkit.cli.progress import Work, reading, working
 from modalkit.cli.reporting import identified_report, named_by_hand, report_wanted, save_report
 from modalkit.cli.showing import (
     save_modes,
@@ -64,17 +54,18 @@ from modalkit.output.destinations import check_outputs, json_of, text_of, uff_of
 from modalkit.output.modes import modes_kind
 from modalkit.output.whole import write_text
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.files import Progress, read_files
-from modalkit.workflow.identification import Processed, numbered, read, read_frfs, stated
+from modalkit.workflow.files import read_files
+from modalkit.workflow.identification import read, read_frfs
+from modalkit.workflow.judged_hits import numbered, stated
+from modalkit.workflow.processed import Processed
 from modalkit.workflow.processing_options import ProcessingOptions
+from modalkit.workflow.stages import AVERAGING, IDENTIFYING, JUDGING
+from modalkit.workflow.usable import usable
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from identification import ModalModel
-
-NAMED = 12
-"""So many degrees of freedom are named in one line."""
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -100,13 +91,13 @@ def inspect(
     statement = ProcessingOptions(decay=decay)
     if write_layout is not None:
         layout = _written_layout(files, layout, write_layout)
-    with reading() as progress:
-        content = read_files(files, layout=layout, progress=progress)
+    with reading(JUDGING) as work:
+        content = read_files(files, layout=layout, progress=work.read)
     out.print(named_files(files) + (f": {content.title}" if content.title else ""), markup=False)
     if content.datasets:
         show_table(content.table() if every else _in_short(content))
-    out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
-    with working("judging the hits"):
+    out.print("usable: " + ("; ".join(usable(content)) or "nothing"))
+    with working(JUDGING):
         long = [holds_several_hits(test) for test in content.tests]
         single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
         warnings: list[str] = []
@@ -165,32 +156,6 @@ def _in_short(content: UffContent) -> pd.DataFrame:
     return concat(rows).sort_values(["file", "line"], kind="stable").drop(columns="message")
 
 
-def _usable(content: UffContent) -> list[str]:
-    parts = [counted(len(content.geometry.nodes), "node")] if content.geometry.nodes else []
-    for test in content.tests:
-        count = sum(p.count for p in test.points)
-        hit, seen = [p.reference for p in test.points], [d for p in test.points for d in p.responses]
-        parts.append(
-            f"{counted(count, 'hit')} at {_places(hit)}, seen at {_places(seen)}, {test.samples} samples at "
-            f"{test.rate:g} Hz"
-        )
-    if content.frfs is not None:
-        f = content.frfs
-        span = f"{f.frequency[0]:g} to {f.frequency[-1]:g} Hz in steps of {f.df:g} Hz"
-        where = f"hit at {_places(f.references)}, seen at {_places(f.responses)}"
-        parts.append(f"{counted(len(f.responses), 'FRF')} ({f.form}), {where}, {span}")
-    if content.modal is not None:
-        parts.append(counted(len(content.modal), "mode"))
-    return parts
-
-
-def _places(dofs: Sequence[Dof]) -> str:
-    """Return how many points there are, and which, the first of many."""
-    names = list(dict.fromkeys(str(dof) for dof in dofs))
-    shown = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
-    return f"{counted(len(names), 'point')} ({shown})"
-
-
 def frf(
     files: Files,
     output: Annotated[Path, typer.Option("--output", "-o", help="UFF file to write")],
@@ -217,8 +182,8 @@ def frf(
         layout=layout,
         sensors=sensor_mass,
     )
-    with reading("averaging the hits") as progress:
-        processed = read_frfs(files, processing=statement, progress=progress)
+    with reading(AVERAGING) as work:
+        processed = read_frfs(files, processing=statement, progress=work.read)
     show_hits(processed.hits)
     show_table(processed.frfs.table(), "FRFs")
     show_rejected(processed.hits)
@@ -273,8 +238,8 @@ def identify(
         sensors=sensor_mass,
         frf_window=frf_window,
     )
-    with reading("identifying") as progress:
-        processed, model = _identified(files, statement, band, order, (add or (), drop or ()), progress)
+    with reading(IDENTIFYING) as work:
+        processed, model = _identified(files, statement, band, order, (add or (), drop or ()), work)
     if isinstance(model, Modes) or processed is None:
         show_modes(model)
     else:
@@ -296,7 +261,7 @@ def _identified(
     band: tuple[float, float] | None,
     order: int | None,
     named: tuple[Sequence[float], Sequence[float]],
-    progress: Progress,
+    work: Work,
 ) -> tuple[Processed | None, ModalModel | Modes]:
     """Return FRFs and modes of files, or of a study's test; modes that exist already have no FRFs."""
     add, drop = named
@@ -308,10 +273,18 @@ def _identified(
             raise StudyError(
                 f"{files[0]}: a study states under [test] how its files are treated; write it there"
             )
-        return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
-    found = read(files, processing=statement, progress=progress)
+        return process(
+            read_study(files[0]),
+            band=band,
+            order=order,
+            add=add,
+            drop=drop,
+            progress=work.read,
+            stage=work.begin,
+        )
+    found = read(files, processing=statement, progress=work.read)
     if not isinstance(found, Modes):
-        return found, found.identify(band=band, order=order, add=add, drop=drop)
+        return found, found.identify(band=band, order=order, add=add, drop=drop, progress=work.begin)
     if order is not None or add or drop:
         raise InputError(
             f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"

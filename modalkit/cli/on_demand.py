@@ -78,13 +78,13 @@ ENTRIES = (
     Entry(
         "tables",
         "compare",
-        "Compute the papers' tables with the whole chain, next to the published values.",
+        "Recompute the tables of two papers from the sample data, beside the published values.",
         "--paper 1, --format 1, --output -o 1, --fluid, --figures 1",
     ),
     Entry(
         "update",
         "updating",
-        "Update the parameters listed under [update] in the study, by frequencies or by FRFs.",
+        "Update the parameters that the study lists for updating, by frequencies or by FRFs.",
         "--shared 1, --bootstrap 1, --seed 1, --json 1, --report 1, --figures 1",
     ),
     Entry(

@@ -42,11 +42,15 @@ Decay = Annotated[
 ]
 WindowOn = Annotated[
     str | None,
-    typer.Option(help="'both' or 'responses': what that window was applied to; default: detected"),
+    typer.Option(
+        help="'both' or 'responses': channels to which the window of --decay was applied; default: detected"
+    ),
 ]
 Window = Annotated[
     float,
-    typer.Option(help="decay of a further exponential window, applied here [1/s]", parser=quantity("1/s")),
+    typer.Option(
+        help="decay of another exponential window, which this command applies [1/s]", parser=quantity("1/s")
+    ),
 ]
 FrfWindowOption = Annotated[
     str | None,
@@ -59,21 +63,27 @@ Band = Annotated[
     tuple[float, float] | None,
     typer.Option(help="frequency band [Hz], as 5 500 or 5Hz 1.2kHz", parser=quantity("Hz")),
 ]
-Add = Annotated[list[float] | None, typer.Option(help="keep a mode here [Hz]; repeat", parser=quantity("Hz"))]
+Add = Annotated[
+    list[float] | None,
+    typer.Option(help="frequency at which a mode is kept [Hz]; may be repeated", parser=quantity("Hz")),
+]
 Drop = Annotated[
-    list[float] | None, typer.Option(help="leave out the mode here [Hz]; repeat", parser=quantity("Hz"))
+    list[float] | None,
+    typer.Option(help="frequency of a mode to leave out [Hz]; may be repeated", parser=quantity("Hz")),
 ]
 Estimate = Annotated[str, typer.Option("--estimator", help="H1, H2 or Hv")]
-Use = Annotated[list[str] | None, typer.Option(help="rejected hit to use anyway, as 12+Z:3; repeat")]
-Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; repeat")]
+Use = Annotated[list[str] | None, typer.Option(help="rejected hit to use anyway, as 12+Z:3; may be repeated")]
+Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; may be repeated")]
 SensorMass = Annotated[
     list[str] | None,
     typer.Option(
-        "--sensor-mass", help="remove an accelerometer's mass, in kg, as 25+Z=0.0086 or 25+Z=8.6g; repeat"
+        "--sensor-mass",
+        help="accelerometer whose mass is removed, as 25+Z=0.0086 (kg) or 25+Z=8.6g; may be repeated",
     ),
 ]
 Report = Annotated[
-    Path | None, typer.Option("--report", help="file for a report: one HTML page with figures")
+    Path | None,
+    typer.Option("--report", help="file for a report with figures: one HTML page, or .docx for Word"),
 ]
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from modalkit.cli.common import out, progress, show_figures, show_table, working
+from modalkit.cli.common import out, show_figures, show_table
+from modalkit.cli.progress import working
 from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
 from modalkit.planning import DesignForecast, Forecast, forecast
@@ -19,6 +19,10 @@ from modalkit.planning.own import bench_of
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check, first_to_follow
 from modalkit.study.read import Study, read_study
+from modalkit.workflow.stages import PLANNING, TRIALS, solving
+
+if TYPE_CHECKING:
+    from modalkit.report.document import Document
 
 WIDEST = 20
 """So many effects still have their separations in a table that is printed; JSON, report and figure have all."""
@@ -48,9 +52,9 @@ def plan_study(
         Where to write.
     """
     own = read_study(study)
-    with working("reading the test"):
+    with working(PLANNING) as work:
         bench = bench_of(own)
-    with working(f"solving {bench.basis}"):
+        work.begin(solving(bench.basis))
         found = forecast(bench)
     show_note(own.name, found)
     show_tables(found)
@@ -66,7 +70,7 @@ def plan_study(
     show_figures(figures, lambda: _figures(found))
 
 
-def _report(study: Study, found: Forecast, checked: Check | None) -> str:
+def _report(study: Study, found: Forecast, checked: Check | None) -> Document:
     from modalkit.report import plan_report
 
     return plan_report(study, found, when=now(), command=this_command(), checked=checked)
@@ -74,10 +78,8 @@ def _report(study: Study, found: Forecast, checked: Check | None) -> str:
 
 def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
     runs = (1 if first_to_follow(found) is None else 2) * trials
-    columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=progress) as bar:
-        task = bar.add_task("trials", total=runs)
-        return check(found, trials, seed, workers=workers, progress=lambda: bar.advance(task))
+    with working(TRIALS) as work:
+        return check(found, trials, seed, workers=workers, progress=work.counter(runs))
 
 
 def _figures(found: Forecast) -> dict[str, Any]:
@@ -105,11 +107,12 @@ def show_tables(found: Forecast) -> None:
     """Print thresholds, separations and changes."""
     show_table(
         _thresholds(found.now),
-        f"From what severity on: {SEEN:g} sigma beyond what tolerances explain, surely {SURE:g}",
+        f"Severities: seen and separated at {SEEN:g} sigma beyond what tolerances explain, surely at {SURE:g}",
     )
     if len(found.now.names) <= WIDEST:
         show_table(
-            _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
+            _separations(found.now),
+            "Separation [sigma] of each effect, as large as asked about, from the nearest case of each other effect",
         )
     if offered(found):
         show_table(_changes(found), "What a change gains", digits={"times smaller": 2, "share separated": 3})

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
 from acquisition.errors import InputError
-from modalkit.cli.common import out, progress, show_table
+from modalkit.cli.common import out, show_table
+from modalkit.cli.progress import working
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.whole import write_json
 from modalkit.papers.a.chain import sample_folder
 from modalkit.papers.real import CASES, RULES, RealOutcome, counts, real_document, real_table, run_real
+from modalkit.workflow.stages import REAL
 
 _GAP = """\
 Gap: r.m.s. error of the frequencies unless otherwise stated, before and after, the latter on modes held out; beside
@@ -41,12 +41,8 @@ def show_real(data: Path | None, json: Path | None, workers: int) -> None:
     check_outputs((json, json_of("modalkit.real/1")))
     if data is not None and not data.is_dir():
         raise InputError(f"{data}: no such folder; name the one of the measured data")
-    columns = (TextColumn("real structures"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=progress, transient=True, disable=not progress.is_terminal) as bar:
-        task = bar.add_task("cases", total=len(CASES))
-        outcomes = run_real(
-            CASES, sample_folder(), data, workers=workers, progress=lambda _: bar.advance(task)
-        )
+    with working(REAL) as work:
+        outcomes = run_real(CASES, sample_folder(), data, workers=workers, progress=work.counter(len(CASES)))
     print_real(outcomes)
     if json is not None:
         write_json(json, real_document(outcomes))

@@ -14,29 +14,36 @@ from acquisition.errors import ModalkitError
 from modalkit.cli.common import drawing, is_study, out
 from modalkit.output.destinations import Kind
 from modalkit.workflow.existing import Modes
+from modalkit.workflow.stages import REPORTING
 
 if TYPE_CHECKING:
     from identification import ModalModel
+    from modalkit.report.document import Document
     from modalkit.study.read import Study
     from modalkit.workflow.case import Session
-    from modalkit.workflow.identification import Processed
+    from modalkit.workflow.processed import Processed
 
 
 def report_wanted(path: Path | None) -> Iterator[tuple[Path, Kind]]:
     """Yield the report as an output of a command, where one is wanted."""
-    if path is not None:
-        from modalkit.report.place import REPORT
+    if path is None:
+        return
+    from modalkit.report.place import report_kind
+    from modalkit.report.word import WORD, check_word
 
-        yield path, REPORT
+    kind = report_kind(path)
+    if kind is WORD:
+        check_word(path)
+    yield path, kind
 
 
-def save_report(path: Path | None, build: Callable[[], str]) -> None:
+def save_report(path: Path | None, build: Callable[[], Document]) -> None:
     """Write a report if a file is given, and say where it is."""
     if path is None:
         return
     from modalkit.report.place import write_report
 
-    with drawing():
+    with drawing(REPORTING):
         write_report(path, build())
     out.print(f"report: {path}", markup=False)
 
@@ -57,7 +64,7 @@ def identified_report(
     modes: ModalModel | Modes,
     named: tuple[Sequence[float], Sequence[float]],
     warnings: Sequence[str],
-) -> str:
+) -> Document:
     """Return the report of an identification; a study with a model has its shapes beside the test's."""
     from modalkit.report import Basis, identification_report
 

@@ -17,7 +17,9 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def open_app(
-    file: Annotated[Path, typer.Argument(help="study file, or a file of hits, FRFs or modes")],
+    file: Annotated[
+        Path, typer.Argument(help="study file, a file of hits, FRFs or modes, or a folder of text")
+    ],
     no_browser: Annotated[bool, typer.Option("--no-browser", help="only print the address")] = False,
     port: Annotated[int, typer.Option(min=0, max=65535, help="port on this machine; 0: any free one")] = 0,
     layout: Layout = None,

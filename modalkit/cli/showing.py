@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 
 from acquisition import EstimationError, HitVerdict, force_range, hits_table
 from acquisition.display import counted
-from modalkit.cli.common import out, show_table, show_warnings, working
+from modalkit.cli.common import out, show_table, show_warnings
+from modalkit.cli.progress import working
 from modalkit.output.whole import write_json
 from modalkit.workflow.existing import Modes
+from modalkit.workflow.stages import SECOND_OPINION
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from identification import ModalModel
-    from modalkit.workflow.identification import Processed
+    from modalkit.workflow.processed import Processed
 
 
 def save_modes(
@@ -93,7 +95,7 @@ def show_second_opinion(processed: Processed, model: ModalModel) -> None:
     from identification import beside, second_opinion
 
     try:
-        with working("asking sdypy-EMA"):
+        with working(SECOND_OPINION):
             table = second_opinion(processed.frfs, band=model.band)
     except EstimationError as error:
         show_warnings([f"no comparison: {error}"])

@@ -10,13 +10,15 @@ import pandas as pd
 import typer
 
 from acquisition.display import counted
-from modalkit.cli.common import check_folder, out, read_by, show_figures, show_table, working
+from modalkit.cli.common import check_folder, out, read_by, show_figures, show_table
 from modalkit.cli.options import Figures
+from modalkit.cli.progress import working
 from modalkit.output.destinations import check_outputs, uff_of
 from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import SimulatedTest, simulate_test
 from modalkit.study.named_effects import effects_of, parse_effect
 from modalkit.study.read import kind_of, read_study
+from modalkit.workflow.stages import SIMULATING
 from updating import LIBRARY
 from updating.effects import Effect
 
@@ -40,14 +42,16 @@ def simulate(
     rate: Annotated[float | None, typer.Option(min=1.0, max=1e8, help="sampling rate [Hz]")] = None,
     noise: Annotated[
         float | None,
-        typer.Option(min=0.0, max=100.0, help="noise of the responses, r.m.s. of their largest magnitude"),
+        typer.Option(
+            min=0.0, max=100.0, help="r.m.s. noise of the responses, relative to their largest magnitude [-]"
+        ),
     ] = None,
     points: Annotated[
         int | None, typer.Option(min=2, max=10_000, help="number of points, if the study has none")
     ] = None,
     remount: Annotated[
         bool,
-        typer.Option("--remount", help="let frequencies and level scatter as after re-mounting"),
+        typer.Option("--remount", help="add the scatter of frequencies and level that re-mounting causes"),
     ] = False,
     figures: Figures = None,
 ) -> None:
@@ -59,7 +63,7 @@ def simulate(
     kind = "beam" if asked.model is None else kind_of(asked.model)
     there: Mapping[str, Effect] = effects_of(asked.spec()) if asked.hypothesis else LIBRARY
     effects = [parse_effect(text, kind, there) for text in effect or ()]
-    with working("hitting the model"):
+    with working(SIMULATING):
         made = simulate_test(asked, effects, seed=seed, options=options)
         made.write(output, as_frfs=frfs)
     _show(made, there)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -16,19 +16,23 @@ from modalkit.cli.common import (
     show_figures,
     show_table,
     show_warnings,
-    working,
 )
 from modalkit.cli.options import Figures, Report
+from modalkit.cli.progress import working
 from modalkit.cli.reporting import now, report_wanted, save_report, this_command
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.update import to_json
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
+from modalkit.workflow.stages import PREPARING
 from modalkit.workflow.update import update_studies
 from updating.frf_update import FrfUpdate
 from updating.update import Update
 from updating.update.statistics.doubts import untested
+
+if TYPE_CHECKING:
+    from modalkit.report.document import Document
 
 PAIRS = {"test_hz": 3, "before_hz": 3, "after_hz": 3, "mac": 4, "shape_sigma": 3}
 PAIRS |= dict.fromkeys(("test_damping", "before_damping", "after_damping"), 5)
@@ -54,15 +58,16 @@ def update(
     report: Report = None,
     figures: Figures = None,
 ) -> None:
-    """Update the parameters listed under [update] in the study, by frequencies or by FRFs."""
+    """Update the parameters that the study lists for updating, by frequencies or by FRFs."""
     check_outputs((json, json_of("modalkit.update/1")), *report_wanted(report), reads=read_by(studies))
     check_folder(figures)
     check_once(studies)
-    with working("reading and identifying"):
-        sessions = [open_study(read_study(path), with_baseline=False) for path in studies]
     names = tuple(name.strip() for name in shared.split(",") if name.strip())
-    with working("updating"):
-        result = update_studies(sessions, names, draws=bootstrap, seed=seed)
+    with working(PREPARING) as work:
+        sessions = [open_study(read_study(path), with_baseline=False) for path in studies]
+        result = update_studies(
+            sessions, names, draws=bootstrap, seed=seed, progress=work.begin, part=work.done
+        )
     before, after = result.rms_percent("before"), result.rms_percent("after")
     state = "converged" if result.converged else "NOT converged"
     out.print(
@@ -85,7 +90,7 @@ def update(
     show_figures(figures, lambda: _figures(result))
 
 
-def _report(result: Update, sessions: list[Session]) -> str:
+def _report(result: Update, sessions: list[Session]) -> Document:
     from modalkit.report import update_report
 
     return update_report(result, sessions, when=now(), command=this_command())

@@ -20,20 +20,19 @@ from modalkit.figures.charts import (
     stabilisation_figure,
 )
 from modalkit.figures.diagnosis.figure import diagnosis_figure
+from modalkit.figures.drawings import Drawings
 from modalkit.figures.hits import hits_figure
 from modalkit.figures.save import save_figures
 from modalkit.figures.shapes.shapes import shapes_figure
 from modalkit.figures.update import update_figures
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
 from updating import Diagnosis
 from updating.localisation import Localisation
 from updating.update import Update
 
-Drawings = dict[str, Figure]
 
-
-def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
+def draw(result: Any, *, folder: Path | str | None = None) -> Drawings:
     """Draw all there is to see of a result.
 
     Parameters
@@ -45,8 +44,8 @@ def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
 
     Returns
     -------
-    dict of str to Figure
-        By name, which is the file's.
+    Drawings
+        A dictionary of figures by name, which is the file's; a notebook shows them.
 
     Raises
     ------
@@ -55,7 +54,7 @@ def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
     """
     for kind, drawn in _BY_KIND.items():
         if isinstance(result, kind):
-            figures = drawn(result)
+            figures = Drawings(drawn(result))
             break
     else:
         names = ", ".join(kind.__name__ for kind in _BY_KIND)
@@ -65,20 +64,20 @@ def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
     return figures
 
 
-def _of_frfs(frfs: FrfSet) -> Drawings:
+def _of_frfs(frfs: FrfSet) -> dict[str, Figure]:
     try:
         return {"frf": frf_figure(frfs), "cmif": cmif_figure(frfs)}
     except InputError:  # no response was measured with every reference
         return {"frf": frf_figure(frfs)}
 
 
-def _of_processed(processed: Processed) -> Drawings:
+def _of_processed(processed: Processed) -> dict[str, Figure]:
     names = ["hits"] + [f"hits_{n}" for n in range(2, len(processed.judged) + 1)]
     hits = {n: hits_figure(j.test, j.verdicts) for n, j in zip(names, processed.judged, strict=False)}
     return _of_frfs(processed.frfs) | hits
 
 
-def _of_model(model: ModalModel) -> Drawings:
+def _of_model(model: ModalModel) -> dict[str, Figure]:
     return {
         "frf": frf_figure(model.frfs, model),
         "stabilisation": stabilisation_figure(model),
@@ -86,11 +85,11 @@ def _of_model(model: ModalModel) -> Drawings:
     }
 
 
-def _of_modes(modal: ModalData) -> Drawings:
+def _of_modes(modal: ModalData) -> dict[str, Figure]:
     return {"auto_mac": auto_mac_figure(modal), "shapes": shapes_figure(modal)}
 
 
-def _of_correlation(found: Correlation) -> Drawings:
+def _of_correlation(found: Correlation) -> dict[str, Figure]:
     rows, columns = (
         [f"{i + 1}: {hertz(f)}" for i, f in enumerate(m.frequency)] for m in (found.test, found.model)
     )
@@ -103,7 +102,7 @@ def _of_correlation(found: Correlation) -> Drawings:
     }
 
 
-def _of_localisation(found: Localisation) -> Drawings:
+def _of_localisation(found: Localisation) -> dict[str, Figure]:
     scores = np.stack([one.scores / one.scores.max() for one in found.found], axis=1)
     note = f"{found.kind} of each region: score, % of the largest of the method"
     if found.spread:
@@ -116,7 +115,7 @@ def _of_localisation(found: Localisation) -> Drawings:
     }  # fmt: skip
 
 
-_BY_KIND: dict[type, Callable[[Any], Drawings]] = {
+_BY_KIND: dict[type, Callable[[Any], dict[str, Figure]]] = {
     HammerTest: lambda test: {"hits": hits_figure(test, judge_hits(test))},
     FrfSet: _of_frfs,
     Processed: _of_processed,

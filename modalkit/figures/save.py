@@ -43,7 +43,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> list[Path
         if not name or Path(name).name != name:
             raise InputError(f"figure name {name!r} is not a plain file name; leave out folders")
     folder = Path(folder)
-    drawn = {folder / f"{name}.png": _png(figure) for name, figure in figures.items()}
+    drawn = {folder / f"{name}.png": png(figure) for name, figure in figures.items()}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for path in drawn:
@@ -57,7 +57,8 @@ def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> list[Path
     return list(drawn)
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """Return a figure as the content of a PNG file."""
     buffer = BytesIO()
     figure.savefig(buffer, format="png", dpi=RESOLUTION, metadata={"Software": "modalkit"})
     return buffer.getvalue()

@@ -18,7 +18,7 @@ from modalkit.output.schemas.modes import HitEntry, ModeEntry, ModesDocument, Sh
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
 from updating.diagnosis.answer.in_no_library import SomethingElse
-from updating.diagnosis.answer.result import Ranked
+from updating.diagnosis.answer.ranked import Ranked
 from updating.diagnosis.answer.verdict import NAME
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from updating.diagnosis.answer.result import ParameterEstimate
+from updating.diagnosis.answer.ranked import ParameterEstimate
 
 
 def numbers_a_form(name: str, estimate: ParameterEstimate) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from acquisition.display import counted
+from modalkit.output.names import zone_in_words
 from modalkit.output.words import located, phrase
 from updating import Diagnosis
 
@@ -17,7 +18,7 @@ def localisation_title(diagnosis: Diagnosis) -> str:
         return "There is no gap beyond tolerances and noise"
     top = max(where.zones, key=lambda z: z.probability, default=None)
     if diagnosis.verdict == "unknown" and top is not None:
-        return f"No explanation was found for the gap; a change of {top.name} alone would fit best"
+        return f"No explanation was found for the gap; a change of {zone_in_words(top.name)} alone would fit best"
     if _in_doubt(diagnosis):
         return "These data cannot show whether the gap lies in the measurement or in the structure"
     if spans(diagnosis):

@@ -8,22 +8,26 @@ from itertools import combinations
 
 import numpy as np
 
-from acquisition.quantities import number, p_value, percent, place, probability
+from acquisition.quantities import number, place, probability
 from modalkit.output.forms import numbers_a_form
+from modalkit.output.how_far import SHOWN, closes, deviating, sure
+from modalkit.output.mechanism import content_text, shared_text
+from modalkit.output.names import is_numbered, owners
 from updating import Diagnosis
-from updating.diagnosis.answer.in_no_library import SomethingElse
-from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
+from updating.diagnosis.answer.in_no_library import SOMETHING_ELSE, SomethingElse
+from updating.diagnosis.answer.ranked import Ranked
+from updating.diagnosis.answer.result import NextTest
 from updating.diagnosis.answer.verdict import NAME
 from updating.diagnosis.answer.where import CHANNELS, acting_together
-from updating.effects import Lack, Twin, in_a_set, twin_of
+from updating.effects import Twin, in_a_set, twin_of
 from updating.effects.regions import named_places
-from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place shows."""
 
-SHOWN = 4
-"""So many parameters are shown in the line on the cause."""
+
+NO_CAUSE = "no cause: tolerances and noise alone"
+"""The row of a ranking that is the answer where there is no gap."""
 
 LIKELY = 0.5
 """A region is named if it holds so much of the probability [-]."""
@@ -39,14 +43,14 @@ def answers(diagnosis: Diagnosis) -> dict[str, str]:
     return {
         "Cause": _cause(diagnosis),
         "Where": _where(diagnosis),
-        "Closes": _closes(diagnosis),
-        "Sure": _sure(diagnosis),
+        "Closes": closes(diagnosis),
+        "Sure": sure(diagnosis),
         "Next": _next(diagnosis),
     }
 
 
 def _cause(diagnosis: Diagnosis) -> str:
-    if diagnosis.verdict == "none" and (odd := _odd(diagnosis)):
+    if diagnosis.verdict == "none" and (odd := deviating(diagnosis)):
         return f"no gap beyond tolerances and noise, once isolated deviations are left out: {odd}"
     if diagnosis.verdict == "none":
         sure = "" if diagnosis.suspected is None else "that is sure to be "
@@ -62,6 +66,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         summary = " ".join(dict.fromkeys(effect.sentence(_stated(diagnosis, effect.key)) for effect in known))
         parts = [f"{' + '.join(names)}.", summary, _elsewhere(diagnosis), _values(diagnosis)]
         return " ".join(part for part in parts if part)
+    if diagnosis.level == "mechanism":
+        return shared_text(diagnosis)
     statement = "these data cannot separate: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
     return f"{statement}; {twin.why}" if twin else statement
@@ -87,6 +93,8 @@ def _unknown(diagnosis: Diagnosis) -> str:
     nothing = "the gap is real, and no effect or set of effects compared explains it"
     if not diagnosis.ranking:
         return nothing
+    if diagnosis.mechanisms:
+        return f"the gap is real, and a cause in no library explains it best: {content_text(diagnosis)}"
     first = " + ".join(diagnosis.ranking[0].effects)
     if diagnosis.lacks in (None, "fit"):
         ends = [f"{name} = {e.bare}" for name, e in diagnosis.ranking[0].parameters.items() if e.at_bound]
@@ -138,8 +146,10 @@ def _values(diagnosis: Diagnosis) -> str:
     if row is None:
         return ""
     stated = []
+    keys = dict.fromkeys(name.rpartition(".")[0] for name in row.parameters)
+    named = dict(zip(keys, (owner for owner, _ in owners(row)), strict=True))
     for name, estimate in row.parameters.items():
-        effect, _, parameter = name.partition(".")
+        effect, _, parameter = name.rpartition(".")
         if (
             estimate.aside
             or parameter in IN_THE_PLACE
@@ -149,7 +159,7 @@ def _values(diagnosis: Diagnosis) -> str:
             continue
         bare = parameter.replace("_", " ")
         several = len(row.effects) > 1 and (parameter == "factor" or len(set(row.effects)) < len(row.effects))
-        whose = f"{effect} " if several else ""
+        whose = f"{named[effect]} " if several else ""
         stated.append(f"{whose}{bare} {estimate}" + (", the end of its range" if estimate.at_bound else ""))
     text = f"({'; '.join(stated[:SHOWN])}; 95 % in brackets)" if stated else ""
     return text if row.plausible else f"{text} This size is implausible: consider other causes, too.".strip()
@@ -158,6 +168,8 @@ def _values(diagnosis: Diagnosis) -> str:
 def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
     """Return a set of effects, with where each is by name, and its size where it is one number."""
     row = _row(diagnosis, names)
+    if names == (SOMETHING_ELSE,) and diagnosis.something_else is not None:
+        return f"a cause in no library ({probability(diagnosis.something_else.probability)})"
     if row is None:
         return " + ".join(names)
     statement = " + ".join(name + _at(row, i) for i, name in enumerate(names))
@@ -195,12 +207,15 @@ def _elsewhere(diagnosis: Diagnosis) -> str:
 
 def _where(diagnosis: Diagnosis) -> str:
     where = diagnosis.where
-    if diagnosis.verdict == "none" and _odd(diagnosis):
+    if diagnosis.verdict == "none" and deviating(diagnosis):
         return "nowhere else: all other data agree"
     if diagnosis.suspected:
         return "no place is certain"
     if diagnosis.verdict == "none" or where.channel == "none":
         return "nowhere: all channels agree"
+    if diagnosis.verdict == "unknown" and diagnosis.mechanisms:
+        band = f". {where.band}" if where.band else ""
+        return f"{' and '.join(f'{m.channel} {m.where}' for m in diagnosis.mechanisms[:3])}{band}"
     if diagnosis.verdict == "unknown":
         band = f"{where.band} " if where.band else ""
         return f"{band}The {where.channel} is where the best-fitting (rejected) explanations act; do not trust it."
@@ -219,7 +234,7 @@ def _where(diagnosis: Diagnosis) -> str:
     text += ", at " + (" and ".join(places) if places else place(where.location))
     zone = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
     one_of_several = zone is not None and len(where.zones) > 1 and len(places) < 2
-    if zone is not None and one_of_several and round(zone.probability, 2) >= LIKELY:
+    if zone and one_of_several and not is_numbered(zone.name) and round(zone.probability, 2) >= LIKELY:
         text += f", region {zone.name}"
     if where.nearest:
         text += f" (nearest test point{_listed(where.nearest)})"
@@ -237,99 +252,8 @@ def _listed(points: tuple[int, ...]) -> str:
     return f"{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
 
 
-def _closes(diagnosis: Diagnosis) -> str:
-    shrink = diagnosis.shrink
-    say = shrink.size
-    what = (
-        "misfit of all data"
-        if shrink.metric == "combined"
-        else f"{shrink.metric.replace('frf', 'FRF')} error"
-    )
-    if diagnosis.verdict == "none":
-        return f"nothing to close; r.m.s. {what} {say(shrink.before)}, noise floor {say(shrink.floor)}"
-    who = "with the best-fitting (rejected) explanation, " if diagnosis.verdict == "unknown" else ""
-    text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
-    if not math.isfinite(shrink.held_after):
-        return (
-            f"{text} (noise floor {say(shrink.floor)}); with a single mode none can be held out, so "
-            "this proves nothing"
-        )
-    text += f", {say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
-    others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
-    if shrink.held_runner_up is not None:
-        others.insert(0, f"runner-up {say(shrink.held_runner_up)}")
-    text += "; held out, " + ", ".join(others)
-    if shrink.points is not None:
-        text += f"; on points held out {percent(shrink.points.before)} -> {percent(shrink.points.after)}"
-    if shrink.closed is not None and diagnosis.verdict != "unknown":
-        share = f"closes {shrink.closed} of the reducible gap"
-        text += f"; {share if shrink.closed.determined else UNDETERMINED}"
-    return text + _left(diagnosis)
-
-
-def _odd(diagnosis: Diagnosis) -> str:
-    """State which data were taken to be worse than stated, and by how much; nothing where none were."""
-    left = diagnosis.remainder
-    if left is None or not left.significant:
-        return ""
-    return f"{', '.join(left.carried_by[:SHOWN])} (up to {left.sigma:.0f} sigma)"
-
-
-def _left(diagnosis: Diagnosis) -> str:
-    """State what the answer leaves beyond noise, and where; nothing where it leaves nothing, or is none."""
-    left = diagnosis.remainder
-    if left is None or not left.significant or diagnosis.verdict in ("unknown", "none"):
-        return ""
-    where = ", ".join(left.carried_by[:SHOWN]) or "all data together"
-    return f"; it leaves more than noise, {left.sigma:.0f} sigma ({where}), unexplained"
-
-
-def _stretched(shrink: Shrink) -> str:
-    if shrink.stretch <= BELIEVED_DOUBT:
-        return ""
-    needed = f"to explain the gap they would have to be off by {shrink.stretch:.0f} sigma"
-    return f" (limited to {BELIEVED_DOUBT:g} sigma; {needed})"
-
-
-UNDETERMINED = "the share of the gap that it closes is not determined (95 % interval: 0 to 100 %)"
-"""In place of a share whose interval is not informative."""
-
-UNREMARKABLE = 0.05
-"""Chance of a gap from which its size is no evidence [-]: of one point, say, among many that agree. Doubled, hardly any
-answer is worded otherwise."""
-
-
-def _sure(diagnosis: Diagnosis) -> str:
-    chance = f"without any cause, such a gap has {p_value(diagnosis.p_value)}"
-    if diagnosis.verdict == "none":
-        return chance
-    if diagnosis.p_value >= UNREMARKABLE:
-        chance += ", so the evidence is its pattern, not its size"
-    if diagnosis.verdict == "unknown":
-        return chance + _left_out(diagnosis)
-    chosen = [row for row in diagnosis.ranking if row.effects in diagnosis.sets]
-    total, fit = sum(row.probability for row in chosen), max(row.p_value for row in chosen)
-    rest = [row for row in diagnosis.ranking if row.effects not in diagnosis.sets]
-    behind = f"; next {' + '.join(rest[0].effects)} {probability(rest[0].probability)}" if rest else ""
-    what = "all other data fit" if _left(diagnosis) else "fits"
-    fits = f"{what} within the noise" if fit >= 0.05 else "fits, but not well"
-    together = f"{probability(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
-    return f"{together}{behind}; {fits} ({p_value(fit)}); {chance}"
-
-
-def _left_out(diagnosis: Diagnosis) -> str:
-    """State how many effects the data did not allow to examine: one of them may be it."""
-    lacking = [why for why in diagnosis.not_examined.values() if why.lack is Lack.DATA]
-    if not lacking:
-        return ""
-    return (
-        f"; {len(lacking)} effect{'s' * (len(lacking) > 1)} could not be examined because data are "
-        "missing (listed below)"
-    )
-
-
 def _next(diagnosis: Diagnosis) -> str:
-    if diagnosis.verdict == "none" and _odd(diagnosis):
+    if diagnosis.verdict == "none" and deviating(diagnosis):
         return "repeat the deviating measurements: their points or signs may be wrong"
     if diagnosis.verdict == "none" and not diagnosis.comparable:
         return (

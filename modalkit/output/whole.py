@@ -25,6 +25,17 @@ def write_text(path: Path, text: str) -> None:
     InputError
         If the folder does not exist or cannot be written.
     """
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file in one step, as :func:`write_text` does.
+
+    Raises
+    ------
+    InputError
+        If the folder does not exist or cannot be written.
+    """
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:
@@ -32,8 +43,8 @@ def write_text(path: Path, text: str) -> None:
             f"{path}: cannot be written ({error.strerror}); name a folder that exists"
         ) from error
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())  # or a power cut leaves an empty file under the name
         Path(name).chmod(0o644)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from acquisition.quantities import p_value, percent, place, raised
-from modalkit.output.forms import numbers_a_form
+from modalkit.output.names import sizes
 from updating import LIBRARY, Diagnosis
-from updating.diagnosis.answer.result import Ranked
+from updating.diagnosis.answer.ranked import Ranked
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
@@ -21,8 +21,10 @@ METRICS = {
 
 
 def short(names: Sequence[str]) -> str:
-    """Name a set of effects on a line: ``sensor mass + length``."""
-    return " + ".join(name.replace("_", " ") for name in names) or "tolerances alone"
+    """Name a set of effects on a line: ``sensor mass + length``; a second one of a name is another one."""
+    again = ("another " if name in names[:i] else "" for i, name in enumerate(names))
+    stated = (f"{other}{name.replace('_', ' ')}" for other, name in zip(again, names, strict=True))
+    return " + ".join(stated) or "tolerances alone"
 
 
 def phrase(names: Sequence[str]) -> str:
@@ -34,14 +36,7 @@ def phrase(names: Sequence[str]) -> str:
 
 def parameters(row: Ranked) -> str:
     """Write the parameters of a row of the ranking on one line, those that the summary leaves aside last."""
-    parts = []
-    for name, estimate in sorted(row.parameters.items(), key=lambda item: item[1].aside):
-        if numbers_a_form(name, estimate):
-            continue
-        bound = " at its bound" if estimate.at_bound else ""
-        statement = name.rpartition(".")[2].replace("_", " ")
-        parts.append(f"{statement} {raised(str(estimate))}{bound}")
-    return ", ".join(parts)
+    return "; ".join(raised(text) for text in sizes(row))
 
 
 def answer(diagnosis: Diagnosis) -> str:
@@ -53,7 +48,8 @@ def answer(diagnosis: Diagnosis) -> str:
             "Most measured modes have no partner in the model: the few that have one do not identify a cause"
         )
     if diagnosis.verdict == "unknown":
-        return f"A real gap ({p_value(diagnosis.p_value)}), and nothing in the library of effects explains it"
+        content = f": {diagnosis.mechanism}" if diagnosis.mechanism else ""
+        return f"A real gap ({p_value(diagnosis.p_value)}), and nothing in the library of effects explains it{content}"
     if diagnosis.verdict == "named":
         where, value = _detail(diagnosis)
         return f"{_capital(phrase(diagnosis.sets[0]))}{where} explains the gap{value}"
@@ -61,6 +57,8 @@ def answer(diagnosis: Diagnosis) -> str:
     if len(named) > 4:
         named = [*named[:3], f"{len(named) - 3} others"]
     listed = ", ".join(named[:-1]) + " or " + named[-1]
+    if diagnosis.level == "mechanism":
+        return f"{_capital(raised(str(diagnosis.mechanism)))}: {listed}; these data cannot show which"
     return f"{_capital(listed)}: one of them explains the gap; these data cannot show which"
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from acquisition.quantities import number
 from modalkit.planning.design import Design
 from updating.diagnosis.next_test.instruments import Caliper, Chain, Weigh
 
@@ -85,7 +86,7 @@ def wider(design: Design, above: float) -> Change:
     """Look at the mode above the band too, at ``above`` [Hz]."""
     return Change(
         "band",
-        f"widen the band to {ABOVE * above:.3g} Hz: one more mode, at {above:.0f} Hz",
+        f"widen the band to {number(ABOVE * above)} Hz (one more mode, at {above:.0f} Hz)",
         replace(design, modes=design.modes + 1),
     )
 

@@ -24,9 +24,7 @@ def offered(found: Forecast) -> list[Advice]:
 
 def brings(one: Advice) -> str:
     """Return what a change newly separates, and that the separable severities grow where they do; empty for neither."""
-    larger = (
-        f"the severities it separates become {1 / one.factor:.2f} times larger" if one.factor < LARGER else ""
-    )
+    larger = f"separable severities become {1 / one.factor:.2f} times larger" if one.factor < LARGER else ""
     return "; ".join(filter(None, (some(separated(one.separates)), larger)))
 
 
@@ -45,8 +43,8 @@ def _separates(now: DesignForecast) -> str:
     pairs = list(now.shown_pairs.values())
     separately = sum(value >= SEEN for value in pairs)
     return (
-        f"Pairs:   {separately} of {len(pairs)} pairs of effects are separated, each effect as strong "
-        "as asked about below."
+        f"Pairs:   {separately} of {len(pairs)} pairs of effects are separated at the severities under "
+        "'asked about' below."
     )
 
 
@@ -56,8 +54,8 @@ def _names(now: DesignForecast) -> str:
     more = f", {edge} more on the edge ({SEEN:g} to {SURE:g} sigma)" if edge else ""
     more += f", {place} more with their place in doubt" if place else ""
     return (
-        f"Named:   {kinds.count('named')} of {len(kinds)} effects surely ({SURE:g} sigma from all "
-        f"others){more}."
+        f"Named:   {kinds.count('named')} of {len(kinds)} effects would be named ({SURE:g} sigma "
+        f"from all others){more}."
     )
 
 
@@ -76,7 +74,7 @@ def _cannot(now: DesignForecast) -> list[str]:
     if near:
         lines.append(f"Hardly:  {some(near)}.")
     if now.unseen:
-        lines.append(f"Unseen:  {some(list(now.unseen), what='effects')} would be taken for no effect.")
+        lines.append(f"Unseen:  {some(list(now.unseen), what='effects')} would not be noticed.")
     return lines
 
 
@@ -98,9 +96,9 @@ def _from_when(now: DesignForecast) -> str:
     words = []
     for name in hard:
         limit = now.limits[name]
-        never = f"{name} at no severity ({limit.nearest} does the same)"
+        never = f"{name} at no severity ({limit.nearest} has the same effect)"
         words.append(statement(now, name, limit.separated) or never)
-    return f"Late:    separated from all others only from these severities on: {'; '.join(words)}."
+    return f"Late:    separated from all others only above these severities: {'; '.join(words)}."
 
 
 def _best(best: Advice) -> str:
@@ -108,4 +106,4 @@ def _best(best: Advice) -> str:
     first = f"separates {newly}" if newly else "separates no further pair"
     less = best.factor >= LARGER
     times = f"{best.factor:.1f} times smaller" if less else f"{1 / best.factor:.1f} times larger"
-    return f"Advice:  {best.change.measure}: {first}; the severities it separates become {times}."
+    return f"Advice:  {best.change.measure}: {first}; separable severities become {times}."

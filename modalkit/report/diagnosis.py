@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import datetime
 
+from modalkit.figures.diagnosis.localisation import localisation_figure
 from modalkit.output.location import localisation_title
 from modalkit.output.words import answer
 from modalkit.report.document import Document, Part, Section, Standing
 from modalkit.report.html import element, joined
-from modalkit.report.page import page
-from modalkit.report.provenance import Basis, provenance
+from modalkit.report.provenance import Basis, cover, provenance
 from modalkit.report.sections import (
     not_examined,
     the_causes,
@@ -39,8 +39,8 @@ from updating import Case, Diagnosis
 
 def diagnosis_report(
     diagnosis: Diagnosis, sessions: Sequence[Session], *, when: datetime, command: str = ""
-) -> str:
-    """Return the report of a diagnosis as the text of an HTML file.
+) -> Document:
+    """Return the report of a diagnosis.
 
     Parameters
     ----------
@@ -53,13 +53,6 @@ def diagnosis_report(
     command : str
         What repeats it.
     """
-    return page(reported(diagnosis, sessions, when=when, command=command))
-
-
-def reported(
-    diagnosis: Diagnosis, sessions: Sequence[Session], *, when: datetime, command: str = ""
-) -> Document:
-    """Return the report of a diagnosis before it is written; see :func:`diagnosis_report`."""
     basis = Basis(when, command, [session.study for session in sessions])
     bests = best_of(diagnosis, sessions)
     tests = sections_of_all(sessions, [explained_models(diagnosis, best) for best in bests])
@@ -68,6 +61,7 @@ def reported(
         "diagnosis",
         joined(
             element("h1", diagnosis.title or "Diagnosis"),
+            cover("Diagnosis of the gap between test and model", basis),
             element("p", answer(diagnosis), class_="answer"),
             the_summary(diagnosis),
         ),
@@ -150,6 +144,12 @@ def _where(diagnosis: Diagnosis, case: Case) -> Part | None:
         return place_chart(diagnosis, case)
     text = (
         "Regions by the probability that the cause sits there, blue for 1; black: test points with the directions "
-        "measured; orange: places found. Drag to turn."
+        "measured; orange: places found."
     )
-    return Standing("place", localisation_title(diagnosis), text, found)
+    return Standing(
+        "place",
+        localisation_title(diagnosis),
+        text,
+        found,
+        still=lambda: localisation_figure(diagnosis, case),
+    )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+from matplotlib.figure import Figure
 
 from modalkit.report.html import Raw
 from modalkit.views.chart import Chart
@@ -22,12 +24,15 @@ class Moving:
         What it shows.
     page : dict
         As of :func:`modalkit.views.shapes.shapes_page`.
+    still : callable
+        What draws them for paper.
     """
 
     name: str
     title: str
     text: str
     page: dict[str, Any]
+    still: Callable[[], Figure]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +47,15 @@ class Standing:
         What it shows.
     page : dict
         As of :func:`modalkit.views.structure.structure_page`.
+    still : callable
+        What draws it for paper.
     """
 
     name: str
     title: str
     text: str
     page: dict[str, Any]
+    still: Callable[[], Figure]
 
 
 Part = Raw | Chart | Moving | Standing

@@ -6,17 +6,17 @@ from collections.abc import Sequence
 
 from acquisition.display import counted
 from acquisition.quantities import hertz, percent
-from identification import ModalModel, mpc
+from identification import ModalModel
 from modalkit.output.documents import without_hits
 from modalkit.report.document import Document, Section
-from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
-from modalkit.report.page import page
-from modalkit.report.provenance import Basis, provenance
+from modalkit.report.html import Raw, bullets, definitions, element, joined
+from modalkit.report.modes import modes_table
+from modalkit.report.provenance import Basis, cover, provenance
 from modalkit.report.sections import the_warnings
 from modalkit.report.tested import sections_of_test, shapes_section
 from modalkit.workflow.case import Session
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
 
 
 def identification_report(
@@ -28,8 +28,8 @@ def identification_report(
     session: Session | None = None,
     warnings: Sequence[str] = (),
     title: str = "",
-) -> str:
-    """Return the report of an identification as the text of an HTML file.
+) -> Document:
+    """Return the report of an identification.
 
     Parameters
     ----------
@@ -49,20 +49,22 @@ def identification_report(
         Of the test.
     """
     identified = modes if isinstance(modes, ModalModel) else None
-    return page(
-        Document(
-            title or "Identification",
-            "modes",
-            joined(element("h1", title or "Identification"), modes_answer(processed, modes)),
-            [
-                Section("Modes", [modes_table(modes)]),
-                Section("Left out", [_left_out(processed, modes)]),
-                *sections_of_test(processed, identified, modes.modal, named),
-                shapes_section(modes.modal, session),
-                Section("Warnings", [the_warnings(list(warnings))]),
-                Section("What this rests on", [provenance(basis)]),
-            ],
-        )
+    return Document(
+        title or "Identification",
+        "modes",
+        joined(
+            element("h1", title or "Identification"),
+            cover("Modes of a test", basis),
+            modes_answer(processed, modes),
+        ),
+        [
+            Section("Modes", [modes_table(modes.modal)]),
+            Section("Left out", [_left_out(processed, modes)]),
+            *sections_of_test(processed, identified, modes.modal, named),
+            shapes_section(modes.modal, session),
+            Section("Warnings", [the_warnings(list(warnings))]),
+            Section("What this rests on", [provenance(basis)]),
+        ],
     )
 
 
@@ -95,36 +97,6 @@ def _shapes(modes: ModalModel | Modes) -> str:
         return "none"
     scaled = "mass-normalised" if modes.modal.scaled else "not mass-normalised"
     return f"at {counted(len(modes.modal.dofs), 'degree')} of freedom, {scaled}"
-
-
-def modes_table(modes: ModalModel | Modes) -> Raw:
-    """Return one row per mode with its standard deviations."""
-    modal = modes.modal
-    assert modal.damping is not None
-    assert modal.damping_sigma is not None
-    purity = None if modal.shapes is None else mpc(modal.shapes)
-    columns = [
-        Column("mode", lambda v: f"{v:.0f}"),
-        Column("frequency [Hz]", lambda v: f"{v:.4f}"),
-        Column("sigma [Hz]", lambda v: f"{v:.2g}"),
-        Column("damping [%]", lambda v: f"{v:.4f}"),
-        Column("sigma [%]", lambda v: f"{v:.2g}"),
-        Column("MPC", lambda v: f"{v:.3f}"),
-    ]
-    rows: list[list[Cell | Raw]] = [
-        [
-            r + 1,
-            float(modal.frequency[r]),
-            float(modal.frequency_sigma[r]),
-            100 * float(modal.damping[r]),
-            100 * float(modal.damping_sigma[r]),
-            None if purity is None else float(purity[r]),
-        ]
-        for r in range(len(modal))
-    ]
-    return table(
-        "Frequencies and damping ratios with one standard deviation; MPC is 1 for a real mode.", columns, rows
-    )
 
 
 def _left_out(processed: Processed | None, modes: ModalModel | Modes) -> Raw:

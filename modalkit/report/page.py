@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from html import escape
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Any
 
+from modalkit.figures.save import png
 from modalkit.report.document import Document, Moving, Part, Section, Standing
 from modalkit.report.html import Raw, element, joined
-from modalkit.report.place import BEGIN
 from modalkit.report.scripts import scripts
 from modalkit.views.chart import Chart
 from modalkit.views.static import shared
+
+BEGIN = '<!doctype html>\n<html lang="en">\n<head><meta name="generator" content="modalkit">'
+"""How every report begins."""
+
+NOTHING = Raw("")
+
+TURN = "Drag to turn, or use the arrow keys; plus and minus zoom."
+"""How a structure in space is turned."""
 
 
 def page(document: Document) -> str:
@@ -76,10 +85,17 @@ def _part(part: Part) -> Raw:
         return part
     if isinstance(part, Chart):
         return _figure(part.name, part.title, part.text, "plot")
-    return _figure(part.name, part.title, part.text, "space")
+    return _figure(part.name, part.title, part.text, "space", _on_paper(part))
 
 
-def _figure(name: str, title: str, text: str, kind: str) -> Raw:
-    head = element("figcaption", element("strong", title), element("span", text), id=f"{name}-title")
+def _figure(name: str, title: str, text: str, kind: str, paper: Raw = NOTHING) -> Raw:
+    turn = element("span", TURN, class_="screen") if kind == "space" else NOTHING
+    head = element("figcaption", element("strong", title), element("span", text), turn, id=f"{name}-title")
     place = element("div", class_=kind)
-    return element("figure", head, place, id=name, role="group", aria_labelledby=f"{name}-title")
+    return element("figure", head, place, paper, id=name, role="group", aria_labelledby=f"{name}-title")
+
+
+def _on_paper(part: Moving | Standing) -> Raw:
+    """Return the picture of a structure in space that print shows in its place."""
+    picture = b64encode(png(part.still())).decode()
+    return element("img", class_="paper", alt=part.title, src=f"data:image/png;base64,{picture}")

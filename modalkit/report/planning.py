@@ -12,16 +12,15 @@ from modalkit.planning.separability import SEEN, SURE
 from modalkit.planning.trials import Check
 from modalkit.report.document import Document, Section
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
-from modalkit.report.page import page
-from modalkit.report.provenance import Basis, provenance
+from modalkit.report.provenance import Basis, cover, provenance
 from modalkit.study.read import Study
 from modalkit.views.charts.planning import separations_chart, thresholds_chart
 
 
 def plan_report(
     study: Study, found: Forecast, *, when: datetime, command: str = "", checked: Check | None = None
-) -> str:
-    """Return the report of a plan as the text of an HTML file.
+) -> Document:
+    """Return the report of a plan.
 
     Parameters
     ----------
@@ -36,22 +35,20 @@ def plan_report(
     checked : Check, optional
         Blind trials on that very rig.
     """
-    document = to_json(found)
-    return page(
-        Document(
-            study.name,
-            "plan",
-            joined(element("h1", study.name), _answer(found)),
-            [
-                Section("What it separates", [separations_chart(found)]),
-                Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
-                Section("What a change gains", [changes_table(found)]),
-                Section(f"Blind trials on {found.bench.basis}", [_trials(checked)]),
-                Section("What was assumed", [bullets(list(found.bench.statement))]),
-                Section("What the forecast leaves out", [_left_out(found)]),
-                Section("What this rests on", [provenance(Basis(when, command, [study]))]),
-            ],
-        )
+    document, basis = to_json(found), Basis(when, command, [study])
+    return Document(
+        study.name,
+        "plan",
+        joined(element("h1", study.name), cover("Plan of a test", basis), _answer(found)),
+        [
+            Section("What it separates", [separations_chart(found)]),
+            Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
+            Section("What a change gains", [changes_table(found)]),
+            Section(f"Blind trials on {found.bench.basis}", [_trials(checked)]),
+            Section("What was assumed", [bullets(list(found.bench.statement))]),
+            Section("What the forecast leaves out", [_left_out(found)]),
+            Section("What this rests on", [provenance(basis)]),
+        ],
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,11 +11,16 @@ from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from acquisition.display import named_files
 from modalkit.report.html import Cell, Column, Raw, definitions, element, joined, table
 from modalkit.study.read import Study
+from modalkit.version import __version__
 
 PACKAGES = ("modalkit-ema", "numpy", "scipy", "sdypy-EMA", "pyuff")
 """Packages whose versions are stated."""
+
+AUTHOR = "MODALKIT_AUTHOR"
+"""Environment variable that names the author of reports whose studies name none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +46,29 @@ class Basis:
     studies: Sequence[Study] = ()
     files: Sequence[Path] = ()
     settings: Mapping[str, str] = field(default_factory=dict)
+
+
+def cover(kind: str, basis: Basis) -> Raw:
+    """Return the line under the title: what is reported, of what, by whom, when, with which version.
+
+    The author is the one that the studies state, else that of the environment variable ``MODALKIT_AUTHOR``.
+
+    Parameters
+    ----------
+    kind : str
+        What is reported.
+    basis : Basis
+        What it rests on.
+    """
+    files = [study.path.name for study in basis.studies] or [path.name for path in basis.files]
+    whose = [study.author for study in basis.studies if study.author] or [os.environ.get(AUTHOR, "")]
+    parts = [
+        kind + (f" ({named_files(files)})" if files else ""),
+        ", ".join(dict.fromkeys(name for name in whose if name)),
+        f"{basis.when.day} {basis.when:%B %Y}",
+        f"modalkit {__version__}",
+    ]
+    return element("p", " · ".join(part for part in parts if part), class_="cover")
 
 
 def provenance(basis: Basis) -> Raw:

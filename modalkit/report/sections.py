@@ -8,12 +8,13 @@ import pandas as pd
 
 from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
-from modalkit.output.forms import numbers_a_form
-from modalkit.output.summary import answers, of_no_library_text, searched_text, separates
-from modalkit.output.words import METRICS
+from modalkit.output.how_far import without_cause
+from modalkit.output.names import in_words, sizes, zone_in_words
+from modalkit.output.summary import NO_CAUSE, answers, of_no_library_text, searched_text, separates
+from modalkit.output.words import METRICS, short
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
-from updating.diagnosis.answer.result import Ranked
+from updating.diagnosis.answer.ranked import Ranked
 
 ROWS = 8
 """Most explanations in the table, beside those of the answer."""
@@ -35,7 +36,8 @@ def _signed(value: float, digits: int) -> str:
 
 def the_summary(diagnosis: Diagnosis) -> Raw:
     """Return the five lines."""
-    return definitions(answers(diagnosis), class_=f"letter {diagnosis.verdict}")
+    lines = {name: in_words(text) for name, text in answers(diagnosis).items()}
+    return definitions(lines, class_=f"letter {diagnosis.verdict}")
 
 
 def the_gap(diagnosis: Diagnosis) -> Raw:
@@ -119,7 +121,7 @@ def _places(diagnosis: Diagnosis) -> Raw:
         ]
         for i, likely_place in enumerate(likely_places)
     ]
-    whose = " + ".join(diagnosis.ranking[0].effects)
+    whose = short(diagnosis.ranking[0].effects)
     return table(
         f"Where {whose} sits, with one standard deviation; places taken at the same time have 100 % each.",
         columns,
@@ -147,7 +149,7 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     used = [k for k in range(3) if any(zone.center[k] for zone in where.zones)]
     centre = [", ".join(f"{'xyz'[k]} = {_signed(z.center[k], 3)}" for k in used) for z in where.zones]
     rows: list[list[Cell | Raw]] = [
-        [z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)
+        [zone_in_words(z.name), c, z.probability] for z, c in zip(where.zones, centre, strict=True)
     ]
     return folded(f"All {len(rows)} zones", table(statement, columns, rows))
 
@@ -174,7 +176,6 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     """Return the ranking, with parameters and intervals, and what is known of the effects of the answer."""
     rows = diagnosis.ranking
     shown = [r for i, r in enumerate(rows) if i < ROWS or r.effects in diagnosis.sets]
-    alone = max(0.0, 1.0 - sum(r.probability for r in rows))
     columns = [
         Column("effects"),
         Column("probability", probability),
@@ -189,15 +190,17 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         )
         for row in shown
     ]
-    cells.append(
-        ["(tolerances and noise alone)", alone, diagnosis.p_value, _why_not_alone(diagnosis), "", ""]
-    )
     marked = [r.effects in diagnosis.sets for r in shown]
+    none = diagnosis.verdict == "none"
+    first = 0 if none else len(cells)
+    alone = without_cause(diagnosis)
+    cells.insert(first, [NO_CAUSE, alone, diagnosis.p_value, _why_not_alone(diagnosis), "", ""])
+    marked.insert(first, none)
     statement = {
         "named": "The shaded row is the answer.",
         "class": "The shaded rows are the answer: one of them, these data cannot show which.",
         "unknown": "None of them explains the gap.",
-        "none": "There is no gap that would need one of them.",
+        "none": "The shaded row is the answer: no cause is needed.",
     }[diagnosis.verdict]
     if not any(row[-1] for row in cells):
         columns, cells = columns[:-1], [row[:-1] for row in cells]
@@ -239,20 +242,14 @@ def _why_not_alone(diagnosis: Diagnosis) -> str:
 
 
 def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
-    stated = []
-    for name, estimate in row.parameters.items():
-        if numbers_a_form(name, estimate):
-            continue
-        bound = ", at the end of its range" if estimate.at_bound else ""
-        statement = name if len(row.effects) > 1 else name.partition(".")[2]
-        stated.append(f"{statement} = {estimate}{bound}")
+    stated = sizes(row)
     if not row.plausible and not any(e.at_bound for e in row.parameters.values()):
         stated.append("(implausible)")
-    near = [" + ".join(names) for names in row.equivalents[:3]]
+    near = [short(names) for names in row.equivalents[:3]]
     if len(row.equivalents) > len(near):
         near.append(f"{len(row.equivalents) - len(near)} more")
     return [
-        " + ".join(row.effects),
+        short(row.effects),
         row.probability,
         row.p_value,
         why,
@@ -263,7 +260,9 @@ def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
 
 def _known(effect: Effect) -> Raw:
     statement = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
-    return element("p", element("strong", effect.name), f": {statement}")
+    name = effect.name.replace("_", " ")
+    key = joined(Raw(" ("), element("code", effect.name), Raw(")")) if name != effect.name else Raw("")
+    return element("p", element("strong", name), key, f": {statement}")
 
 
 def the_shrinkage(diagnosis: Diagnosis) -> Raw:
@@ -274,9 +273,9 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
         ["tolerances alone", None, shrink.held_nuisance],
     ]
     if shrink.held_runner_up is not None:
-        name = " + ".join(diagnosis.ranking[1].effects) if len(diagnosis.ranking) > 1 else ""
+        name = short(diagnosis.ranking[1].effects) if len(diagnosis.ranking) > 1 else ""
         rows.append([f"runner-up: {name}", None, shrink.held_runner_up])
-    best = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "best explanation"
+    best = short(diagnosis.ranking[0].effects) if diagnosis.ranking else "best explanation"
     rows += [[best, shrink.after, shrink.held_after], ["noise of the test", None, shrink.floor]]
     statement = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
     columns = [
@@ -304,7 +303,7 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
     left = diagnosis.remainder
     if left is None:
         return element("p", "There is no gap, so nothing is left of one.")
-    whose = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "the tolerances"
+    whose = short(diagnosis.ranking[0].effects) if diagnosis.ranking else "the tolerances"
     if not left.significant:
         worst = (
             f" The largest residual is {left.sigma:.1f} standard deviations."
@@ -324,18 +323,18 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
 def _of_no_library(diagnosis: Diagnosis) -> list[Raw]:
     """Return a paragraph on a cause that is in no library, none where it was not examined."""
     text = of_no_library_text(diagnosis)
-    return [element("p", text[:1].upper() + text[1:] + ".")] if text else []
+    return [element("p", in_words(text[:1].upper() + text[1:] + "."))] if text else []
 
 
 def the_next_test(diagnosis: Diagnosis) -> Raw:
     """Return what to measure next."""
     if not diagnosis.next_test:
-        last = answers(diagnosis)["Next"]
+        last = in_words(answers(diagnosis)["Next"])
         return element("p", last[:1].upper() + last[1:] + ".")
     rows: list[list[Cell | Raw]] = []
     for test in diagnosis.next_test:
         sigma = None if math.isnan(test.expected_sigma) else test.expected_sigma
-        rows.append([test.measure, separates(test), sigma])
+        rows.append([in_words(test.measure), in_words(separates(test)), sigma])
     columns = [Column("measure next"), Column("separates"), Column("by [σ], at least", lambda v: f"{v:.1f}")]
     if not any(row[1] for row in rows):
         return table("What would show more.", columns[:1], [row[:1] for row in rows])
@@ -350,7 +349,9 @@ def not_examined(diagnosis: Diagnosis) -> Raw:
     by_reason: dict[str, list[str]] = {}
     for name, why in diagnosis.not_examined.items():
         by_reason.setdefault(str(why), []).append(name)
-    rows: list[list[Cell | Raw]] = [[", ".join(names), why] for why, names in by_reason.items()]
+    rows: list[list[Cell | Raw]] = [
+        [in_words(", ".join(names)), in_words(why)] for why, names in by_reason.items()
+    ]
     words = "None of these is ruled out by the answer above."
     return joined(
         table("Effects that could not be examined, and why.", [Column("effects"), Column("why")], rows),
@@ -361,4 +362,4 @@ def not_examined(diagnosis: Diagnosis) -> Raw:
 
 def the_warnings(warnings: list[str]) -> Raw:
     """Return the warnings, each once."""
-    return bullets(list(dict.fromkeys(warnings))) if warnings else element("p", "None.")
+    return bullets(list(dict.fromkeys(map(in_words, warnings)))) if warnings else element("p", "None.")

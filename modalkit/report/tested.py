@@ -9,15 +9,18 @@ from acquisition.display import counted
 from acquisition.errors import InputError, ModalkitError
 from acquisition.quantities import hertz
 from identification import ModalModel, pole_origins
+from modalkit.figures.shapes.shapes import shapes_figure
 from modalkit.report.document import Moving, Section
 from modalkit.report.html import Cell, Column, Raw, folded, table
+from modalkit.report.modes import modes_table
 from modalkit.views.chart import Chart
 from modalkit.views.charts.matrix import matrix_chart
 from modalkit.views.charts.poles import poles_chart
 from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, thin_cmif
 from modalkit.views.shapes import Beside, Changed, shapes_page
 from modalkit.workflow.case import Session, modes_in_band
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
+from modalkit.workflow.stated_places import with_places
 from updating.correlation.correlate import correlate
 from updating.nominal import predictor_of
 
@@ -60,6 +63,7 @@ def session_sections(
     modal = modal_of(session)
     test = session.study.test
     return [
+        Section(f"Modes of the test{whose}", [] if modal is None else [modes_table(modal)]),
         *sections_of_test(
             session.processed, session.identified, modal, (test.add, test.drop), number, whose, tests
         ),
@@ -153,6 +157,10 @@ def shapes_section(
     mark, title = "" if number == 1 else f"-{number}", f"Shapes in motion{whose}"
     if modal is None or modal.shapes is None:
         return Section(title)
+    if session is not None:
+        study = session.study
+        modal, _ = with_places(modal, study.test, study.axes(study.test), study.spec())
+    placed = modal
     beside, why = _beside(session)
     page = shapes_page(modal, beside, changed)
     if not page["modes"]:
@@ -160,8 +168,9 @@ def shapes_section(
     moving = Moving(
         f"shapes{mark}",
         _moving(modal, page["model"] is not None),
-        _turn(page["placed"]),
+        _lines(page["placed"]),
         page | {"no_model": why},
+        still=lambda: shapes_figure(placed),
     )
     return Section(title, [moving, None if beside is None else mac_chart(beside, f"mac{mark}")])
 
@@ -173,9 +182,8 @@ def _moving(modal: ModalData, both: bool) -> str:
     return f"{counted(len(modal), 'mode')} at {where}{beside}"
 
 
-def _turn(placed: bool) -> str:
-    lines = "Lines are the test's own; surfaces stand only where these close one. "
-    return (lines if placed else "") + "Drag to turn, or use the arrow keys; plus and minus zoom."
+def _lines(placed: bool) -> str:
+    return "Lines are the test's own; surfaces stand only where these close one." if placed else ""
 
 
 def _beside(session: Session | None) -> tuple[Beside | None, str]:

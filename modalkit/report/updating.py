@@ -12,8 +12,7 @@ from acquisition.display import counted
 from acquisition.quantities import percent, raised
 from modalkit.report.document import Document, Part, Section
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
-from modalkit.report.page import page
-from modalkit.report.provenance import Basis, provenance
+from modalkit.report.provenance import Basis, cover, provenance
 from modalkit.report.sections import the_warnings
 from modalkit.report.tested import sections_of_all
 from modalkit.views.chart import Chart
@@ -31,8 +30,10 @@ from updating.update import Update
 from updating.update.statistics.doubts import untested
 
 
-def update_report(result: Update, sessions: Sequence[Session], *, when: datetime, command: str = "") -> str:
-    """Return the report of an update as the text of an HTML file.
+def update_report(
+    result: Update, sessions: Sequence[Session], *, when: datetime, command: str = ""
+) -> Document:
+    """Return the report of an update.
 
     Parameters
     ----------
@@ -45,18 +46,13 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
     command : str
         What repeats it.
     """
-    return page(reported(result, sessions, when=when, command=command))
-
-
-def reported(result: Update, sessions: Sequence[Session], *, when: datetime, command: str = "") -> Document:
-    """Return the report of an update before it is written; see :func:`update_report`."""
     title = ", ".join(session.case.title for session in sessions)
     basis = Basis(when, command, [session.study for session in sessions])
     tests = sections_of_all(sessions, [updated_models(result, session.case) for session in sessions])
     return Document(
         title,
         "update",
-        joined(element("h1", title), update_answer(result)),
+        joined(element("h1", title), cover("Update of a model", basis), update_answer(result)),
         [
             *update_sections(result),
             *tests,

@@ -17,7 +17,7 @@ from acquisition.uff import write_uff
 from modalkit.simulator.bodies.complex_modes import ComplexModes
 from modalkit.simulator.conduct import Conduct, draw_conduct
 from modalkit.simulator.scene import MARKED, Scene
-from modalkit.simulator.setup import Setup
+from modalkit.simulator.setup import Setup, hit_points
 
 _OVERSAMPLING = 1.25 * 2.56
 _DECAY_WANTED = 6.0
@@ -81,11 +81,6 @@ def modal_system(modes: ComplexModes, setup: Setup) -> ModalSystem:
         points=tuple(Dof(i + 1, 3) for i in hit),
         gradients=np.concatenate([gradients, absent]),
     )
-
-
-def hit_points(setup: Setup) -> list[int]:
-    """Return the indices of the points that are hit."""
-    return [i for i in range(len(setup.points)) if setup.drive or i != setup.sensor]
 
 
 def hammer_plan(

@@ -254,3 +254,8 @@ def _drawn(setup: Setup) -> dict[str, Any]:
     """Return what every body has of a drawing."""
     named = ("width", "thickness", "clamped", "alpha", "beta", "E", "density", "poisson")
     return {"start": 0.0, "end": setup.length, **{name: getattr(setup, name) for name in named}}
+
+
+def hit_points(setup: Setup) -> list[int]:
+    """Return the indices of the points that are hit."""
+    return [i for i in range(len(setup.points)) if setup.drive or i != setup.sensor]

@@ -13,7 +13,7 @@ from updating.models.decks import DeckModel, imported, read_deck_model
 from updating.models.imported import SI, UNITS
 
 if TYPE_CHECKING:
-    from modalkit.study.tables import ModelTable
+    from modalkit.study.model_tables import ModelTable
 
 OF_MATRICES = (
     "stiffness", "mass_matrix", "stiffness_name", "mass_name", "stiffness_parts", "mass_parts", "nodes", "material",

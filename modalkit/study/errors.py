@@ -8,18 +8,8 @@ from collections.abc import Sequence
 from pydantic import BaseModel, ValidationError
 
 from modalkit.study.hypothesis_table import HypothesisTable
-from modalkit.study.tables import (
-    AxesTable,
-    DampingTable,
-    EnvironmentTable,
-    MassTable,
-    MaterialTable,
-    MeasurementTable,
-    ModelTable,
-    RegionTable,
-    TolerancesTable,
-    UpdateTable,
-)
+from modalkit.study.model_tables import DampingTable, MassTable, MaterialTable, ModelTable, RegionTable
+from modalkit.study.tables import AxesTable, EnvironmentTable, MeasurementTable, TolerancesTable, UpdateTable
 
 
 def explain(error: ValidationError, root: type[BaseModel]) -> str:

@@ -10,7 +10,7 @@ from acquisition.errors import StudyError
 from acquisition.si_units import si_value
 from modalkit.study.hypothesis_table import HypothesisTable
 from modalkit.study.matrices import FACTORS_ALONE
-from modalkit.study.tables import rising
+from modalkit.study.strict import rising
 from updating.models import Spec
 from updating.models.decks import KNOWN, DeckModel, deck_matrices
 from updating.models.fields import Sparse

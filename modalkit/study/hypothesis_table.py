@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from modalkit.study.tables import Strict
+from modalkit.study.strict import Strict
 
 SIGNS = frozenset(".#+(")
 """What stands between names, and between a name and its parameter, and so cannot stand in one."""

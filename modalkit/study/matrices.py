@@ -14,7 +14,7 @@ from updating.models import Damping, Material, PointMass, Region, Spec
 from updating.models.imported import SI, Imported, read_imported
 
 if TYPE_CHECKING:
-    from modalkit.study.tables import ModelTable
+    from modalkit.study.model_tables import ModelTable
 
 FOREIGN = ("length", "width", "thickness", "elements", "clamped", "theory")
 """Keys of ``[model]`` that beams and plates have and matrices do not."""

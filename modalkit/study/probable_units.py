@@ -10,7 +10,7 @@ from acquisition.errors import StudyError
 from acquisition.si_units import si_value
 
 if TYPE_CHECKING:
-    from modalkit.study.tables import MaterialTable, ModelTable
+    from modalkit.study.model_tables import MaterialTable, ModelTable
 
 SPEEDS = (8.0, 30e3)
 """Speed of waves along a bar, sqrt(E/density), of anything that is struck: soft silicone 10, diamond 18000 [m/s]."""

@@ -14,16 +14,10 @@ from pydantic import ValidationError
 from acquisition.errors import StudyError
 from modalkit.study.errors import explain, known_keys
 from modalkit.study.hypothesis_table import HypothesisTable
+from modalkit.study.model_tables import MATRICES_ONLY, ModelTable
 from modalkit.study.probable_units import check_units
-from modalkit.study.tables import (
-    MATRICES_ONLY,
-    EnvironmentTable,
-    MeasurementTable,
-    ModelTable,
-    Strict,
-    TolerancesTable,
-    UpdateTable,
-)
+from modalkit.study.strict import Strict
+from modalkit.study.tables import EnvironmentTable, MeasurementTable, TolerancesTable, UpdateTable
 from modalkit.study.toml import read_toml
 
 if TYPE_CHECKING:
@@ -57,6 +51,8 @@ class Study(Strict):
 
     title: str = ""
     """Name of the study in outputs."""
+    author: str = ""
+    """Who signs for the report; left out, the environment variable MODALKIT_AUTHOR."""
     note: str = ""
     """Free text, not used."""
     test: MeasurementTable
@@ -196,14 +192,16 @@ class Study(Strict):
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
-        from updating.tolerances import Tolerances
+        from updating.tolerances import FREE, Tolerances
 
         stated = self.tolerances.model_dump()
         parts, bounds = stated.pop("parts"), stated.pop("bounds")
+        free = frozenset(name for name, value in stated.items() if value == "free")
+        stated |= dict.fromkeys(free, FREE)
         values = {name: value if value > NOTHING else 0.0 for name, value in stated.items()}
         parts = {name: value for name, value in parts.items() if value > NOTHING}
         damping = values.pop("damping")
-        return Tolerances(values, damping, parts, bounds)
+        return Tolerances(values, damping, parts, bounds, free)
 
     def accepted(self) -> tuple[tuple[str, dict[str, Any]], ...]:
         """Return the effects put into the model, with the values of their parameters and the points they name.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
@@ -12,6 +12,20 @@ from acquisition.si_units import si_value
 def in_unit(unit: str) -> BeforeValidator:
     """Return what lets a number of a table be written with a unit [``unit`` where it has none]."""
     return BeforeValidator(lambda value: si_value(value, unit))
+
+
+def share_or(word: str) -> BeforeValidator:
+    """Return what lets a share from 0 to below 1 be written as a word instead, which stays as it is."""
+
+    def read(value: Any) -> Any:
+        if value == word:
+            return word
+        share = si_value(value, "")
+        if isinstance(share, int | float) and not 0 <= share < 1:
+            raise ValueError(f"{share:g} is not from 0 to below 1; write such a share, or {word!r}")
+        return share
+
+    return BeforeValidator(read)
 
 
 Share = Annotated[float, in_unit(""), Field(ge=0, lt=1)]

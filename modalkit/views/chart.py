@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -176,6 +176,15 @@ class Chart:
         if self.below:
             found["below"] = [axis.data() for axis in self.below]
         return found | ({"choices": self.choices.data()} if self.choices is not None else {}) | self.more
+
+    def on_paper(self) -> Chart:
+        """Return the chart with the first of its choices in it, which its text then names."""
+        if self.choices is None or not self.choices.items:
+            return self
+        item, series = self.choices.items[0]
+        shown = [one if one.x is not None else replace(one, x=self.choices.x) for one in series]
+        text = f"{self.choices.name} {item}. {self.text}"
+        return replace(self, series=[*self.series, *shown], text=text, choices=None)
 
 
 @dataclass(frozen=True, eq=False)

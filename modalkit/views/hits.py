@@ -14,7 +14,8 @@ from modalkit.output.documents import hit_document
 from modalkit.study.read import Study
 from modalkit.views.charts.frf import frf_names
 from modalkit.views.curves import POINTS, check_frf, decibels, envelope, lines
-from modalkit.workflow.identification import Judged, Processed
+from modalkit.workflow.judged_hits import Judged
+from modalkit.workflow.processed import Processed
 
 PULSE_EDGE = 0.1
 """A pulse lasts as long as the force is above this share of its peak [-]. Halved: noise of a weak hit counts to it."""
@@ -123,6 +124,29 @@ def _found(processed: Processed, point: str, hit: int) -> tuple[Judged, HitVerdi
                 if (str(verdict.point), verdict.hit) == (point, hit):
                     return judged, verdict, entry, row
     raise InputError(f"there is no hit {hit} at {point}")
+
+
+def others_page(processed: Processed, index: int, *, most: int = 24) -> dict[str, Any]:
+    """Return the magnitudes of the other FRFs of the same force, evenly chosen where there are more than ``most``.
+
+    Raises
+    ------
+    InputError
+        If there is no such FRF.
+    """
+    frfs = processed.frfs
+    check_frf(frfs, index)
+    same = [i for i, one in enumerate(frfs.references) if one == frfs.references[index] and i != index]
+    if not same:  # a hammer that roves: those of the same response
+        same = [i for i, one in enumerate(frfs.responses) if one == frfs.responses[index] and i != index]
+    chosen = [same[int(k)] for k in np.linspace(0, len(same) - 1, min(most, len(same))).round()]
+    names = frf_names(frfs)
+    found = lines(frfs.frequency, **{names[i]: np.abs(frfs.values[i]) for i in chosen})
+    return {
+        "x": found["x"],
+        "curves": [{"name": names[i], "magnitude": found[names[i]]} for i in chosen],
+        "left_out": len(same) - len(chosen),
+    }
 
 
 def frf_page(processed: Processed, index: int) -> dict[str, Any]:

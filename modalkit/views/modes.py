@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 
 from acquisition import InputError
-from identification import ModalModel, auto_mac, cmif, mpc
+from identification import ModalModel, auto_mac, cmif, mpc, mvmif
 from identification.identify import Provisional
 from identification.pole_reasons import Origins
 from modalkit.study.read import Study
 from modalkit.views.charts.frf import frf_names
 from modalkit.views.curves import check_frf, lines
-from modalkit.views.hits import first_frf
+from modalkit.views.hits import first_frf, frf_page
+from modalkit.views.stability import MEANINGS, pole_stability
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.identification import Processed
+from modalkit.workflow.processed import Processed
 
 WHENCE = {
     "chain": "stable poles of the chart",
@@ -97,6 +98,8 @@ def _chart(model: ModalModel, origins: Origins) -> dict[str, Any]:
         "order": chart.orders[chart.level[near]],
         "damping": chart.damping[near],
         "reason": origins.chain[near],
+        "letter": "".join(pole_stability(chart)[near]),
+        "letters": MEANINGS,
         "reasons": [{"kind": r.kind, "text": r.text, "mode": r.mode} for r in origins.reasons],
         "orders": chart.orders,
         "references": chart.participation.shape[1],
@@ -104,16 +107,32 @@ def _chart(model: ModalModel, origins: Origins) -> dict[str, Any]:
 
 
 def _sum(model: ModalModel) -> dict[str, Any]:
-    """Return the summed magnitude and the mode indicator functions over the lines."""
-    frfs = model.frfs
+    """Return the summed magnitude over the lines."""
+    total = np.abs(model.frfs.values).sum(axis=0)
+    return lines(model.frfs.frequency, sum=np.where(total > 0, total, np.nan))
+
+
+def measured_page(processed: Processed, study: Study) -> dict[str, Any]:
+    """Return the FRFs of a test before anything is identified: their sum, and the one that is shown first."""
+    frfs = processed.frfs
     total = np.abs(frfs.values).sum(axis=0)
-    curves = {"sum": np.where(total > 0, total, np.nan)}
+    return {
+        "sum": lines(frfs.frequency, sum=np.where(total > 0, total, np.nan)),
+        "band": study.test.band or [float(frfs.frequency[0]), float(frfs.frequency[-1])],
+        "unit": frfs.unit,
+        "frf": frf_page(processed, first_frf(frfs)),
+    }
+
+
+def indicators_page(model: ModalModel) -> dict[str, Any]:
+    """Return the mode indicator functions over the lines, complex and multivariate; why, where there are none."""
+    frfs = model.frfs
     try:
-        found = cmif(frfs)
-    except InputError:
-        return lines(frfs.frequency, **curves)
-    curves |= {f"cmif{k}": np.asarray(found[k]) for k in found.columns}
-    return lines(frfs.frequency, **curves)
+        found = {"CMIF": cmif(frfs), "MvMIF": mvmif(frfs)}
+    except InputError as error:
+        return {"why": str(error)}
+    curves = {f"{name} {k}": np.asarray(table[k]) for name, table in found.items() for k in table.columns}
+    return lines(frfs.frequency, **curves) | {"why": ""}
 
 
 def fit_page(model: ModalModel, index: int) -> dict[str, Any]:

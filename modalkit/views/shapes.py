@@ -13,6 +13,7 @@ from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.errors import ModalkitError
 from identification import mpc
 from modalkit.views.faces import closed_faces
+from modalkit.views.grid_lines import grid_lines
 from modalkit.views.mesh import edges_of, mesh_of
 from modalkit.views.pairs import pairs_of
 from modalkit.workflow.case import Session
@@ -86,12 +87,18 @@ def shapes_page(modal: ModalData, beside: Beside | None, changed: Sequence[Chang
     vectors = _vectors(modal, nodes)
     row = {node: i for i, node in enumerate(nodes)}
     joined = [(row[int(a)], row[int(b)]) for a, b in modal.geometry.lines if int(a) in row and int(b) in row]
+    drawn_by = "file" if joined else "grid" if placed else "order"
+    if drawn_by == "grid":
+        joined = grid_lines(places)
     page: dict[str, Any] = {
         "nodes": nodes,
+        "lines_from": drawn_by,
         "still": len(nodes) - len(measured),
         "places": places,
         "placed": placed,
-        "why": "" if placed else "the file gives no coordinates: points stand in a row, by their numbers",
+        "why": ""
+        if placed
+        else "neither file nor study gives coordinates: points stand in a row by their numbers; give places in [test]",
         "lines": joined if placed else [[i, i + 1] for i in range(len(nodes) - 1)],
         "faces": closed_faces(places, [pair for pair in joined if max(pair) < len(measured)])
         if placed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +16,8 @@ from acquisition.warned import prefixed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.study.read import MeasurementTable, Study, read_study
 from modalkit.workflow.files import Progress
-from modalkit.workflow.identification import Processed, read_frfs
+from modalkit.workflow.identification import read_frfs
+from modalkit.workflow.processed import Processed
 from modalkit.workflow.processing_options import ProcessingOptions
 from modalkit.workflow.stated_places import with_places
 from updating import Case, Measured, measured_from_identified, measured_from_modes
@@ -135,6 +136,7 @@ def process(
     add: Sequence[float] = (),
     drop: Sequence[float] = (),
     progress: Progress | None = None,
+    stage: Callable[[str], None] | None = None,
 ) -> tuple[Processed, ModalModel]:
     """Return FRFs and modes of a study's test.
 
@@ -148,6 +150,8 @@ def process(
         Beside what the study states: modes to keep and to leave out [Hz].
     progress : function, optional
         Called with the part of the files that is read, from 0 to 1.
+    stage : function, optional
+        Called with the name of every stage of the identification as it begins.
 
     Raises
     ------
@@ -156,7 +160,9 @@ def process(
     """
     if not study.test.files:
         raise StudyError(f"{study.path}: [test] names no files to identify; add files = [...]")
-    return _identified(study, study.test, band=band, order=order, add=add, drop=drop, progress=progress)
+    return _identified(
+        study, study.test, band=band, order=order, add=add, drop=drop, progress=progress, stage=stage
+    )
 
 
 def _identified(
@@ -168,11 +174,16 @@ def _identified(
     add: Sequence[float] = (),
     drop: Sequence[float] = (),
     progress: Progress | None = None,
+    stage: Callable[[str], None] | None = None,
 ) -> tuple[Processed, ModalModel]:
     files = [study.file(f) for f in table.files]
     processed = read_frfs(files, processing=processing_of(study, table), progress=progress)
     return processed, processed.identify(
-        band=band or table.band, order=order or table.order, add=[*table.add, *add], drop=[*table.drop, *drop]
+        band=band or table.band,
+        order=order or table.order,
+        add=[*table.add, *add],
+        drop=[*table.drop, *drop],
+        progress=stage,
     )
 
 

@@ -16,7 +16,8 @@ from identification import mac as mac_of_shapes
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, modes_in_band, process
 from modalkit.workflow.existing import Modes
-from modalkit.workflow.identification import Processed, read
+from modalkit.workflow.identification import read
+from modalkit.workflow.processed import Processed
 
 ModesOf: TypeAlias = ModalData | ModalModel | Modes | Processed | Session | Study | Path | str
 """What modes can be had of."""

@@ -11,6 +11,7 @@ from modalkit.workflow.case import Session, sessions_of
 from updating import Diagnosis, diagnose, diagnose_together
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.effects import LIBRARY, Effect
+from updating.steps import SingleCause
 
 
 def diagnose_studies(
@@ -20,6 +21,8 @@ def diagnose_studies(
     *,
     rules: DecisionRules = DEFAULT_RULES,
     progress: Callable[[str], None] | None = None,
+    part: Callable[[float], None] | None = None,
+    found: Callable[[SingleCause], None] | None = None,
 ) -> Diagnosis:
     """Diagnose one study, or several together.
 
@@ -34,7 +37,11 @@ def diagnose_studies(
     rules : DecisionRules
         What the verdict is decided by.
     progress : function, optional
-        Called with the name of every stage of the diagnosis of one study.
+        Called with the name of every stage as it begins.
+    part : function, optional
+        Called with how much of a stage is done, from 0 to 1, in those that compare causes.
+    found : function, optional
+        Called with every single cause as it is compared, no cause first.
 
     Raises
     ------
@@ -46,10 +53,12 @@ def diagnose_studies(
     library, sessions = _library(without), sessions_of(studies)
     if len(sessions) > 1:
         cases = [session.case for session in sessions]
-        return diagnose_together(cases, shared=shared, library=library, rules=rules)
+        return diagnose_together(
+            cases, shared=shared, library=library, rules=rules, progress=progress, part=part, found=found
+        )
     if shared:
         raise InputError(f"--shared {','.join(shared)}: there is one study only; give those that share it")
-    return diagnose(sessions[0].case, library=library, rules=rules, progress=progress)
+    return diagnose(sessions[0].case, library=library, rules=rules, progress=progress, part=part, found=found)
 
 
 def _library(without: Sequence[str]) -> list[Effect]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from acquisition.arrays import FloatArray
 from updating import Case, Diagnosis, Predictor
-from updating.diagnosis.answer.result import ParameterEstimate
+from updating.diagnosis.answer.ranked import ParameterEstimate
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.fit import Point, evaluate, highest
 from updating.effects import Variant, in_a_set
@@ -46,7 +46,7 @@ class Fitted:
         problem, stage = self.problem, self.candidate.stage(self.problem.predictor)
         state = self.candidate.assemble(stage, self.candidate.split(stage, self.point.coordinates.tolist()))
         shift = self.point.marginal.shift[: len(problem.names)]
-        whole = state.plus(problem.departure(shift, stage))
+        whole = state.plus(problem.doubted.departure(shift, stage))
         return stage.for_test(stage.measured, (*stage.additions, lambda _: whole)), whole
 
 

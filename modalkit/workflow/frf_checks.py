@@ -34,7 +34,7 @@ def identical(frfs: FrfSet) -> tuple[str, ...]:
     groups = [rows for rows in seen.values() if len(rows) > 1 and _unlike(frfs, rows)]
     return tuple(
         f"the FRFs {listed(frfs, rows)} are identical to the last "
-        "digit: one measurement that was stored for several points; check them, and leave out what is a copy"
+        "digit: one measurement was probably stored for several points; check them, and leave out the copies"
         for rows in groups
     )
 
@@ -70,8 +70,8 @@ def without_constant(frfs: FrfSet, warnings: list[str]) -> FrfSet:
         return frfs
     if flat.all():
         raise InputError(
-            f"{frfs.source}: every FRF is the same at all frequencies ({abs(inner[0, 0]):.3g} {frfs.unit}), so nothing "
-            "is to be identified; check that the responses are not the force channel again"
+            f"{frfs.source}: every FRF is the same at all frequencies ({abs(inner[0, 0]):.3g} {frfs.unit}), so "
+            "there is no mode to identify; check whether the response channels hold the force"
         )
     names = listed(frfs, np.flatnonzero(flat).tolist())
     warnings.append(f"FRF {names} is the same at all frequencies and was left out; check its channel")

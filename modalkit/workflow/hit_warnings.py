@@ -96,8 +96,8 @@ def on_coherence(frfs: FrfSet, judged: Sequence[tuple[HammerTest, Sequence[HitVe
             continue
         where = f"{response}/{frfs.references[row]}"
         text = (
-            f"the mean coherence of {where} is {mean[row]:.2f}, of the other FRFs of {response} {mean[rows].min():.2f} "
-            f"to {mean[rows].max():.2f}: {_culprit(str(frfs.references[row]), judged)}"
+            f"the mean coherence of {where} is {mean[row]:.2f}, that of the other FRFs of {response} "
+            f"{mean[rows].min():.2f} to {mean[rows].max():.2f}: {_culprit(str(frfs.references[row]), judged)}"
         )
         notes.append(Consequential(text))
     return notes
@@ -119,10 +119,10 @@ def _culprit(point: str, judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]
         if without[best] > whole + MENDED * (1 - whole):
             hit = used[best].hit
             return (
-                f"hit {hit} does not agree with the others there (without it {without[best]:.2f}), as if its force "
-                f"were clipped; see its record, and leave it out with --leave {point}:{hit}"
+                f"hit {hit} disagrees with the others at this point (coherence without it: {without[best]:.2f}), as if "
+                f"its force were clipped; check its record, and leave it out with --leave {point}:{hit}"
             )
-    return "the hits there scatter in place, one of them is clipped, or the response there is small"
+    return "the hits at this point scatter in place, one of them is clipped, or the response is small"
 
 
 def on_window(test: HammerTest) -> list[str]:
@@ -137,8 +137,8 @@ def on_window(test: HammerTest) -> list[str]:
     if decay is None:
         return []
     text = (
-        f"{test.source}: the force decays at {decay:.3g} 1/s (its noise, or the tops of clipped hits): an "
-        "exponential window seems to have been applied, which makes every damping too high; state it with --decay or "
+        f"{test.source}: the force (its noise, or the tops of clipped hits) decays at {decay:.3g} 1/s: an exponential "
+        "window seems to have been applied, which makes every damping too high; state it with --decay or "
         "exponential_window"
     )
     return [Consequential(text)]

@@ -2,261 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from acquisition import (
-    Dof,
-    EstimationError,
     FrfSet,
-    HammerTest,
-    HitVerdict,
     InputError,
     UffContent,
-    Windows,
-    decide,
-    estimate_frfs,
-    force_range,
-    hits_table,
-    holds_several_hits,
-    judge_hits,
-    pulses_alone,
-    split_hits,
-    state_window,
 )
-from acquisition.display import Displayed, Shown, named_files
-from acquisition.quantities import hertz
-from acquisition.warned import Consequential, in_order
+from acquisition.display import named_files
+from acquisition.warned import in_order
 from modalkit.workflow.existing import Modes, existing
 from modalkit.workflow.files import Progress, read_files
 from modalkit.workflow.frf_checks import identical, without_constant
-from modalkit.workflow.hit_warnings import on_coherence, on_hits, on_window
-from modalkit.workflow.joining import together
-from modalkit.workflow.levels import Select, with_levels
-from modalkit.workflow.mixed import with_read
+from modalkit.workflow.hit_warnings import on_coherence, on_hits
+from modalkit.workflow.judged_hits import Proposals, check_decay, decided, proposed
+from modalkit.workflow.processed import Processed, frfs_of
 from modalkit.workflow.processing_options import ProcessingOptions
 from modalkit.workflow.references import among_references, with_references
 from modalkit.workflow.sensors import without_sensors
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from identification import ModalModel, Prepared
-
 AS_READ = ProcessingOptions()
-KEPT = 4
-"""Bands and orders whose fits a test keeps: what is undone and done again needs no new fit. Each takes some ten times
-the memory of the FRFs [-]."""
-
-SAME_DECAY = 1e-3  # relative difference of decays that are the same
-
-
-@dataclass(frozen=True, eq=False)
-class Judged(Displayed):
-    """A test with what is thought of its hits.
-
-    Parameters
-    ----------
-    test : HammerTest
-        Records, one a hit.
-    verdicts : tuple of HitVerdict
-        On each hit, the user's decisions included.
-    """
-
-    test: HammerTest
-    verdicts: tuple[HitVerdict, ...]
-
-    def _headline(self) -> str:
-        return f"{self.test._headline()}; {sum(not v.used for v in self.verdicts)} left out"
-
-    def _frame(self) -> pd.DataFrame:
-        return self.test.table()
-
-
-@dataclass(frozen=True, eq=False)
-class Processed(Shown):
-    """A test, turned into FRFs.
-
-    Parameters
-    ----------
-    content : UffContent
-        What the files held.
-    frfs : FrfSet
-        FRFs, estimated from the hits or read.
-    judged : tuple of Judged
-        The hits they were estimated from; empty where the files held FRFs.
-    processing : ProcessingOptions
-        What the user stated.
-    warnings : tuple of str
-        What the user should know.
-    """
-
-    content: UffContent
-    frfs: FrfSet
-    judged: tuple[Judged, ...]
-    processing: ProcessingOptions
-    warnings: tuple[str, ...]
-
-    @property
-    def hits(self) -> tuple[HitVerdict, ...]:
-        """Verdict on every hit."""
-        return tuple(v for judged in self.judged for v in judged.verdicts)
-
-    def hits_table(self) -> pd.DataFrame:
-        """Return one row per hit, with its verdict."""
-        return hits_table(self.hits)
-
-    def identify(
-        self,
-        *,
-        band: tuple[float, float] | None = None,
-        order: int | None = None,
-        add: Sequence[float] = (),
-        drop: Sequence[float] = (),
-    ) -> ModalModel:
-        """Identify the modes of a band; see :func:`identification.identify`.
-
-        Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
-        the part in which the FRFs carry information, and what was done is among the warnings; so is what was found of
-        the hits that changes a number, as a window that is not stated.
-        """
-        model = self._modes(band, order, add, drop)
-        own = [w for w in self.warnings if isinstance(w, Consequential)]
-        warnings = in_order([*own, *model.warnings])
-        return model if warnings == model.warnings else replace(model, warnings=warnings)
-
-    def _modes(
-        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
-    ) -> ModalModel:
-        """Identify, and say whether frequencies and constants follow the level of the hits."""
-
-        def of(processed: Processed) -> Select:
-            return lambda products: processed._identified(band, order, add, [*drop, *products])
-
-        if self.processing.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
-            return of(self)(())
-        windows = Windows(decay=self.processing.window) if self.processing.window else None
-        tests = [(j.test, j.verdicts) for j in self.judged]
-        single = [(pulses_alone(test, averaged=False)[0], verdicts) for test, verdicts in tests]
-        return with_levels(of(self), single, lambda data: of(self._of(data)), windows=windows)
-
-    def _of(self, data: FrfSet | Sequence[HammerTest]) -> Processed:
-        """Return the same test with other FRFs, or those of other hits, all of which are used."""
-        if isinstance(data, FrfSet):
-            return replace(self, frfs=data)
-        frfs = _frfs_of([Judged(test, ()) for test in data], self.content, self.processing, [])
-        return replace(self, frfs=without_constant(frfs, []))
-
-    def _identified(
-        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
-    ) -> ModalModel:
-        reach = self._reach([*add, *drop]) if band is None else None
-        if reach is None:
-            return self._informed(band, order, add, drop)
-        statement = Consequential(
-            f"the force is 20 dB down at {hertz(reach[1])}: modes are sought below that; give a band to go "
-            "further"
-        )
-        with _naming_band(self.frfs, None, statement):
-            model = self.prepared(reach, order).modes(add=add, drop=drop)
-        return replace(model, warnings=(*model.warnings, statement))
-
-    def _informed(
-        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
-    ) -> ModalModel:
-        """Identify the modes of the part of a band in which the FRFs carry information."""
-        from identification import at_cut_edge
-
-        within, statement = self._informed_part(band, [*add, *drop])
-        with _naming_band(self.frfs, band, statement):
-            prepared = self.prepared(within, order)
-            model = prepared.modes(add=add, drop=drop)
-            whole = band or (float(self.frfs.frequency[0]), float(self.frfs.frequency[-1]))
-            if beyond := at_cut_edge(model.modal.frequency, within or whole, whole, self.frfs.df):
-                model = prepared.modes(add=add, drop=[*drop, *beyond])
-        return model if statement is None else replace(model, warnings=(*model.warnings, statement))
-
-    def _informed_part(
-        self, band: tuple[float, float] | None, named: Sequence[float]
-    ) -> tuple[tuple[float, float] | None, str | None]:
-        """Return the part of a band that carries information and what was cut; all of it if a mode is named beyond."""
-        from identification import informed_band
-
-        if band not in self._informed_bands:
-            judged = [(j.test, j.verdicts) for j in self.judged]
-            self._informed_bands[band] = informed_band(self.frfs, judged, band)
-        within, statement = self._informed_bands[band]
-        if within is not None and any(not within[0] <= f <= within[1] for f in named):
-            return band, None
-        return within, statement
-
-    def within(self, band: tuple[float, float] | None, named: Sequence[float]) -> tuple[float, float] | None:
-        """Return the band that is identified where this one is asked for and modes are named [Hz]; None is all."""
-        reach = self._reach(named) if band is None else None
-        return self._informed_part(band, named)[0] if reach is None else reach
-
-    def prepared(self, band: tuple[float, float] | None, order: int | None) -> Prepared:
-        """Return what of an identification does not depend on the modes named, kept for the next call.
-
-        Parameters
-        ----------
-        band, order : tuple of float and int, optional
-            As of :func:`identification.identify`.
-        """
-        from identification import prepare
-
-        if (band, order) not in self._prepared:
-            if len(self._prepared) >= KEPT:
-                self._prepared.pop(next(iter(self._prepared)))
-            self._prepared[band, order] = prepare(self.frfs, band=band, order=order)
-        return self._prepared[band, order]
-
-    @cached_property
-    def _prepared(self) -> dict[tuple[tuple[float, float] | None, int | None], Prepared]:
-        return {}
-
-    @cached_property
-    def _informed_bands(
-        self,
-    ) -> dict[tuple[float, float] | None, tuple[tuple[float, float] | None, str | None]]:
-        return {}
-
-    def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
-        """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
-        force, lines = force_range(self.hits), self.frfs.frequency
-        low = float(lines[lines > 0][0])
-        if force is None or not low < force.band20 < lines[-1] or max(named, default=0.0) >= force.band20:
-            return None
-        return low, force.band20
-
-    def _headline(self) -> str:
-        hits = f"; {len(self.hits)} hits, {sum(not v.used for v in self.hits)} left out" if self.hits else ""
-        return f"{self.frfs._headline()}{hits}"
-
-    def _frame(self) -> pd.DataFrame:
-        return self.frfs.table()
-
-
-@contextmanager
-def _naming_band(frfs: FrfSet, asked: tuple[float, float] | None, statement: str | None) -> Iterator[None]:
-    """Name the band that was asked for where nothing is found in the part of it that was used.
-
-    Raises
-    ------
-    EstimationError
-        If one is raised inside; with why only a part was used, if so.
-    """
-    try:
-        yield
-    except EstimationError as error:
-        if statement is None:
-            raise
-        where = "" if asked is None else f" between {asked[0]:g} and {asked[1]:g} Hz"
-        raise EstimationError(f"{frfs.source}: no mode is found{where}; {statement}") from error
 
 
 def read(
@@ -345,7 +112,12 @@ def _statement(processing: ProcessingOptions, decay: float, layout: Path | str |
     return processing
 
 
-def from_content(content: UffContent, paths: Sequence[Path], processing: ProcessingOptions) -> Processed:
+def from_content(
+    content: UffContent,
+    paths: Sequence[Path],
+    processing: ProcessingOptions,
+    proposals: Proposals | None = None,
+) -> Processed:
     """Return the FRFs of a test whose files are read already.
 
     Parameters
@@ -356,6 +128,8 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
         Their names, for messages.
     processing : ProcessingOptions
         How records are treated.
+    proposals : Proposals, optional
+        Those of the same content and processing, where they are there already.
 
     Raises
     ------
@@ -366,7 +140,9 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
     if processing.references:
         content = with_references(content, processing.references)
         processing = among_references(processing)
-    judged = _judged(content.tests, processing, warnings)
+    if proposals is None:
+        proposals = proposed(content.tests, processing)
+    judged = decided(proposals, processing, warnings)
     if judged and processing.frf_window is not None:
         raise InputError(
             f"{named_files(paths)}: --frf-window (frf_window in a study) is for files of FRFs, but these hold raw "
@@ -374,7 +150,7 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
         )
     if judged:
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
-        frfs = _frfs_of(judged, content, processing, warnings)
+        frfs = frfs_of(judged, content, processing, warnings)
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, processing, warnings)
     else:
@@ -412,102 +188,7 @@ def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -
             f"{frfs.source}: the files hold FRFs; a window on the responses alone cannot be set right in them"
         )
     if processing.decay and frfs.decay:
-        _check_decay(frfs.source, frfs.decay, processing.decay)
+        check_decay(frfs.source, frfs.decay, processing.decay)
     if processing.frf_window is not None:
         frfs = replace(frfs, window=processing.frf_window)
     return replace(frfs, decay=processing.decay) if processing.decay and not frfs.decay else frfs
-
-
-def _check_decay(source: str, stated: float, statement: float) -> None:
-    if abs(stated - statement) > SAME_DECAY * stated:
-        raise InputError(
-            f"{source}: the file states an exponential window of {stated:g} 1/s, but {statement:g} 1/s is "
-            "given; leave one out or correct the other"
-        )
-
-
-def _judged(
-    tests: Sequence[HammerTest], processing: ProcessingOptions, warnings: list[str]
-) -> tuple[Judged, ...]:
-    """Split long records, state the window and judge the hits; decisions go to the test that has the hit."""
-    split = []
-    for test in tests:
-        one = test
-        if holds_several_hits(one):
-            one, statement = split_hits(replace(one, decay=one.decay or processing.decay))
-            warnings += statement
-        split.append(stated(one, processing, warnings))
-    proposals = numbered([judge_hits(test) for test in split])
-    every = tuple(v for verdicts in proposals for v in verdicts)
-    decided = iter(decide(every, use=processing.use, leave=processing.leave) if every else ())
-    cleared = [pulses_alone(test) for test in split]
-    warnings += [text for _, statement in cleared for text in statement]
-    return tuple(
-        Judged(test, tuple(next(decided) for _ in verdicts))
-        for (test, _), verdicts in zip(cleared, proposals, strict=True)
-    )
-
-
-def stated(test: HammerTest, processing: ProcessingOptions, warnings: list[str]) -> HammerTest:
-    """Return a test with the window stated that was applied; warn of one that is not stated.
-
-    Parameters
-    ----------
-    test : HammerTest
-        Records, one a hit.
-    processing : ProcessingOptions
-        What the user states about the window.
-    warnings : list of str
-        What was found is added to it.
-
-    Raises
-    ------
-    InputError
-        If the file states another window.
-    """
-    if processing.decay and test.decay:
-        _check_decay(test.source, test.decay, processing.decay)
-    elif processing.decay:
-        test, statement = state_window(test, decay=processing.decay, on=processing.window_on)
-        warnings += statement
-    else:
-        warnings += on_window(test)
-    return test
-
-
-def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, ...]]:
-    """Return the verdicts on the hits of several tests, the hits at each point numbered through.
-
-    Parameters
-    ----------
-    tests : sequence of tuple of HitVerdict
-        Verdicts of `judge_hits` on each test.
-    """
-    seen: dict[Dof, int] = {}
-    answer = []
-    for verdicts in tests:
-        before = dict(seen)
-        answer.append(tuple(replace(v, hit=before.get(v.point, 0) + v.hit) for v in verdicts))
-        for v in verdicts:
-            seen[v.point] = seen.get(v.point, 0) + 1
-    return answer
-
-
-def _frfs_of(
-    judged: Sequence[Judged], content: UffContent, processing: ProcessingOptions, warnings: list[str]
-) -> FrfSet:
-    """Return the FRFs of hits, and with them those that were read beside these."""
-    frfs = _estimated(judged, processing)
-    if content.frfs is None:
-        return frfs
-    return with_read(frfs, content.frfs, content.tests, warnings, decay=processing.decay)
-
-
-def _estimated(judged: Sequence[Judged], processing: ProcessingOptions) -> FrfSet:
-    windows = Windows(decay=processing.window) if processing.window else None
-    return together(
-        [
-            estimate_frfs(j.test, estimator=processing.estimator, verdicts=j.verdicts, windows=windows)
-            for j in [j for j in judged if not j.verdicts or any(v.used for v in j.verdicts)] or judged[:1]
-        ]
-    )

@@ -15,8 +15,6 @@ from updating import Measured, Spec
 from updating.test_data.axes import Axes
 from updating.test_data.placement import Placed, matched, place
 
-BY_HAND = 1e-9
-
 
 @dataclass(frozen=True, eq=False)
 class PlannedPoints:

@@ -1,4 +1,4 @@
-"""Stated places of test points, and stated directions of sensors."""
+"""Stated places of test points, lines between them, and stated directions of sensors."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition import Dof, Geometry, InputError, ModalData, StudyError
+from acquisition.arrays import IntArray
 from modalkit.study.tables import MeasurementTable
 from updating import Axes, Spec
 
 
 def with_places(
-    modal: ModalData, table: MeasurementTable, axes: Axes, spec: Spec
+    modal: ModalData, table: MeasurementTable, axes: Axes | None = None, spec: Spec | None = None
 ) -> tuple[ModalData, tuple[str, ...]]:
-    """Return modes with the places and directions that a study states of their points, and what to say of it.
+    """Return modes with the places, lines and directions that a study states of their points, and what to say of it.
 
     A point whose place is stated neither in the file nor in the study is taken for the node of that number of a model
     with nodes.
@@ -25,28 +26,31 @@ def with_places(
         The modes.
     table : MeasurementTable
         What the study states about their measurement.
-    axes : Axes
+    axes : Axes, optional
         The model's axes in the coordinates of the test.
-    spec : Spec
-        The model.
+    spec : Spec, optional
+        The model; without one, only what is stated is known.
 
     Raises
     ------
     StudyError
-        If a place is stated of a point that the test does not have, or a direction of what has none.
+        If a place is stated of a point that the test does not have, a line of one without a place, or a direction of
+        what has none.
     """
     nodes = tuple(dict.fromkeys(dof.node for dof in modal.dofs))
     stated = _stated(table, nodes)
     geometry = modal.geometry
     lost = [n for n in nodes if n not in stated and n not in geometry]
-    known = _of_model(lost, axes, spec) if modal.shapes is not None else {}
+    known = {} if axes is None or spec is None or modal.shapes is None else _of_model(lost, axes, spec)
     if stated or known:
         geometry = _moved(geometry, {**stated, **known})
+    if table.lines:
+        geometry = replace(geometry, lines=_joined(table, geometry))
     if table.directions:
         geometry = _turned(geometry, table.directions, nodes)
     warnings = (
-        f"{len(known)} test point(s) have no coordinates and are taken for the model's nodes of their numbers; if they "
-        "are others, give places in [test]",
+        f"{len(known)} test point(s) have no coordinates; each is placed at the model's node of the same number. If "
+        "that is wrong, give places in [test]",
     )
     return replace(modal, geometry=geometry), warnings if known else ()
 
@@ -57,6 +61,19 @@ def _stated(table: MeasurementTable, nodes: tuple[int, ...]) -> dict[int, tuple[
         measured = ", ".join(map(str, nodes[:8])) or "none"
         raise StudyError(f"[test] places name point {strange[0]}; points of the test are {measured}")
     return found
+
+
+def _joined(table: MeasurementTable, geometry: Geometry) -> IntArray:
+    """Return the lines that are stated, each once, shape (n_lines, 2)."""
+    pairs = dict.fromkeys((min(pair), max(pair)) for pair in table.lines)
+    for pair in pairs:
+        if pair[0] == pair[1]:
+            raise StudyError(f"[test] lines join point {pair[0]} with itself; give two points, as [[1, 2]]")
+        if lost := [node for node in pair if node not in geometry]:
+            raise StudyError(
+                f"[test] lines name point {lost[0]}, which has no place; give it in places, or take the line out"
+            )
+    return np.array(list(pairs), dtype=np.int64)
 
 
 def _of_model(nodes: list[int], axes: Axes, spec: Spec) -> dict[int, tuple[float, ...]]:

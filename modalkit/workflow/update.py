@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +14,11 @@ from acquisition.hits.windows import Windows
 from identification import ModalModel
 from modalkit.study.read import Study
 from modalkit.workflow.case import Session, sessions_of
-from modalkit.workflow.identification import Judged, Processed
+from modalkit.workflow.judged_hits import Judged
+from modalkit.workflow.processed import Processed
+from modalkit.workflow.stages import REDRAWING, UPDATING, UPDATING_DRAWS
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
+from updating.steps import Steps
 from updating.test_data.measured_frfs import MeasuredFrfs, measured_frfs, redrawn
 from updating.update import Update, bootstrap, redrawn_frequencies, update
 from updating.update.data.system import Weights
@@ -27,6 +30,8 @@ def update_studies(
     *,
     draws: int = 0,
     seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+    part: Callable[[float], None] | None = None,
 ) -> Update:
     """Update the models of one or several studies as their ``[update]`` tables state.
 
@@ -41,6 +46,10 @@ def update_studies(
         drawn [-].
     seed : int
         Of these draws.
+    progress : function, optional
+        Called with the name of every stage as it begins.
+    part : function, optional
+        Called with how much of a stage is done, from 0 to 1, in those that draw.
 
     Returns
     -------
@@ -54,15 +63,24 @@ def update_studies(
     EstimationError
         If no measured mode has a partner.
     """
+    steps = Steps.to(progress, part)
     sessions = sessions_of(studies, with_baseline=False)
-    tables = [session.study.update for session in sessions]
-    methods = {table.method for table in tables}
+    steps.begin(UPDATING)
+    methods = {session.study.update.method for session in sessions}
     if methods == {"frf"} and len(sessions) == 1 and not shared:
-        return _by_frfs(sessions[0], draws, seed)
-    if "frf" in methods:
-        first = next(s for s in sessions if s.study.update.method == "frf")
+        return _by_frfs(sessions[0], draws, seed, steps)
+    return _by_modes(sessions, shared, draws, seed, steps)
+
+
+def _by_modes(
+    sessions: Sequence[Session], shared: Sequence[str], draws: int, seed: int, steps: Steps
+) -> Update:
+    """Update by frequencies, and what else of the modes the studies name."""
+    tables = [session.study.update for session in sessions]
+    by_frfs = [session for session in sessions if session.study.update.method == "frf"]
+    if by_frfs:
         raise StudyError(
-            f'{first.study.path}: updating by FRFs takes one study at a time; use method = "eigenvalue" for '
+            f'{by_frfs[0].study.path}: updating by FRFs takes one study at a time; use method = "eigenvalue" for '
             "several, or for shared parameters"
         )
     for session, table in zip(sessions, tables, strict=True):
@@ -78,10 +96,13 @@ def update_studies(
     if tables[0].data != ["frequencies"]:
         raise StudyError("--bootstrap draws frequencies anew; leave data out of [update]")
     rng = np.random.default_rng(seed)
-    frequencies = [_frequencies(session, rng, draws) for session in sessions]
+    steps.begin(REDRAWING)
+    frequencies = [_frequencies(session, rng, draws, steps) for session in sessions]
+    steps.begin(UPDATING_DRAWS)
     return bootstrap(
-        cases, rng=rng, n=draws, frequencies=frequencies, parameters=own, shared=shared, weights=weights
-    ).update
+        cases, rng=rng, n=draws, frequencies=frequencies, parameters=own, shared=shared, weights=weights,
+        steps=steps,
+    ).update  # fmt: skip
 
 
 def _weights(sessions: Sequence[Session]) -> Weights:
@@ -110,7 +131,7 @@ def _listed(session: Session) -> list[float]:
     )
 
 
-def _by_frfs(session: Session, draws: int, seed: int) -> FrfUpdate:
+def _by_frfs(session: Session, draws: int, seed: int, steps: Steps) -> FrfUpdate:
     if session.identified is None:
         raise StudyError(f'{session.study.path}: [update] method = "frf" needs FRFs; give files in [test]')
     table, case = session.study.update, session.case
@@ -120,9 +141,10 @@ def _by_frfs(session: Session, draws: int, seed: int) -> FrfUpdate:
     if not draws:
         return update_frfs(case, frfs, parameters=table.named, stages=table.stages, lines=table.lines)
     rng = np.random.default_rng(seed)
+    steps.begin(UPDATING_DRAWS)
     return bootstrap_frf_update(
         case, frfs, rng=rng, n=draws, draws=_receptances(session, frfs, rng, draws),
-        parameters=table.named, stages=table.stages, lines=table.lines,
+        parameters=table.named, stages=table.stages, lines=table.lines, steps=steps,
     ).update  # fmt: skip
 
 
@@ -144,7 +166,7 @@ def _drawn(judged: Judged, processed: Processed, rng: np.random.Generator, n: in
     )
 
 
-def _frequencies(session: Session, rng: np.random.Generator, n: int) -> FloatArray | None:
+def _frequencies(session: Session, rng: np.random.Generator, n: int, steps: Steps) -> FloatArray | None:
     found = _hits(session)
     if found is None:
         return None
@@ -153,7 +175,7 @@ def _frequencies(session: Session, rng: np.random.Generator, n: int) -> FloatArr
     windows = Windows(decay=processing.window) if processing.window else None
     try:
         return redrawn_frequencies(
-            identified, judged.test, rng=rng, n=n,
+            identified, judged.test, rng=rng, n=n, steps=steps,
             estimator=processing.estimator, verdicts=judged.verdicts, windows=windows,
         )  # fmt: skip
     except EstimationError as error:

@@ -11,7 +11,8 @@ from updating.nominal import predictor_of
 from updating.prediction.predict import Predictor
 from updating.update import Update
 from updating.update.estimate import Estimate
-from updating.update.parameters.parameters import ModelParameter, build_parameter_set
+from updating.update.parameters.named import build_parameter_set
+from updating.update.parameters.parameters import ModelParameter
 
 
 def updated_predictor(result: Update, case: Case) -> Predictor:

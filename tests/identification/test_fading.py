@@ -44,6 +44,7 @@ def test_noise_fades_as_the_window_stated_or_not(decay: float, part: float) -> N
     assert np.sqrt(np.mean(np.square(off))) < 1.7
 
 
+@pytest.mark.long
 def test_frfs_without_hits_show_no_fading() -> None:
     rng = np.random.default_rng(1)
     system = modal_system(

@@ -32,6 +32,7 @@ def test_very_light_damping_four_modes_and_no_fifth(beam):
     assert any("no drive point" in w for w in model.warnings)
 
 
+@pytest.mark.long
 def test_second_opinion_finds_the_published_poles(beam):
     table = second_opinion(beam, band=(65.0, 1000.0), order=30)
     np.testing.assert_allclose(table["frequency [Hz]"], BEAM_HZ, rtol=2e-4)

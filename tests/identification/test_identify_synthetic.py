@@ -23,6 +23,7 @@ def assert_all_and_only(model, truth, low, high, *, frequency, damping):
     np.testing.assert_allclose(model.modal.damping, truth.damping[wanted], rtol=damping)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("low", "order", "noise"),
     [
@@ -65,6 +66,7 @@ def test_lsce_leads_to_the_same_modes(rng):
     np.testing.assert_allclose(one.poles, other.poles, rtol=1e-6)
 
 
+@pytest.mark.long
 def test_clean_data_give_the_truth_to_many_digits():
     truth = bench()
     model = identify(truth.frfs(lines(), column()), band=(0.0, 1000.0))
@@ -207,5 +209,5 @@ def test_options_that_do_not_exist():
         identify(frfs, method="ssi")
     with pytest.raises(InputError, match="order 1"):
         identify(frfs, order=1)
-    with pytest.raises(InputError, match=r"lines do at 1000 Hz; give a band that they reach"):
+    with pytest.raises(InputError, match=r"beyond the last line at 1000 Hz; give a band within the lines"):
         identify(frfs, band=(2000.0, 3000.0))

@@ -54,6 +54,7 @@ def found(frfs: FrfSet) -> ModalModel:
     return identify(frfs, band=(20.0, 340.0))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rate", [5e-4, -2e-3, 4e-3])
 @pytest.mark.parametrize("hammer", [True, False])
 def test_a_drift_is_found_with_its_sign_and_the_modes_are_those_of_the_middle(
@@ -117,6 +118,7 @@ def test_a_test_that_does_not_rove_has_none() -> None:
     assert found(roved(line(0.0, 3), 1, hammer=False)).trend is None  # a line, and the sensor's mass
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rate", [0.02, -0.035])
 def test_a_drift_of_many_widths_makes_no_rows_of_modes(rate: float) -> None:
     model = found(roved(line(rate), 4))

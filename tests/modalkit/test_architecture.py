@@ -110,6 +110,7 @@ def test_whoever_keeps_secrets_loads_nothing_of_the_candidates() -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.long
 def test_nothing_is_plotted_below_the_face() -> None:
     for path in sources(*ROOMS[:3]):
         assert not {n for n in imported(path) if n.split(".")[0] == "matplotlib"}, path

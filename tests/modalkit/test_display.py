@@ -8,14 +8,20 @@ from dataclasses import fields, is_dataclass
 from html.parser import HTMLParser
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
+from figure_cases import model_of
 from matplotlib.text import Text
+from test_localisation_figure import diagnosis_with
+from test_report import complete
 
 import acquisition
 import identification
 import modalkit
 import updating
-from acquisition.display import Displayed, described, named_files
+from acquisition.display import Displayed, described, formats, named_files
+from acquisition.quantities import decimals
 from modalkit import figures
 from modalkit.samples import sample_file
 from updating import Diagnosis
@@ -154,6 +160,7 @@ def _functions(name: str, thing: Any) -> Iterator[tuple[str, Any]]:
         yield from ((f"{name}.{n}", f) for n, f in vars(thing).items() if inspect.isfunction(f))
 
 
+@pytest.mark.long
 def test_strings_are_taken_as_paths(tmp_path: Any, session: modalkit.Session) -> None:
     study = str(sample_file("beam_dry/study.toml"))
     assert modalkit.read_study(study).name == session.study.name
@@ -174,6 +181,7 @@ def test_a_notebook_gets_a_table_without_row_numbers_nobody_named(session: modal
     assert "<th>mode</th>" in modes
 
 
+@pytest.mark.long
 def test_an_update_is_drawn_in_one_call(session: modalkit.Session, tmp_path: Any) -> None:
     result = modalkit.update_studies([session], ["E", "length"])
     drawn = modalkit.draw(result, folder=str(tmp_path / "figures"))
@@ -192,3 +200,30 @@ def test_an_update_is_drawn_in_one_call(session: modalkit.Session, tmp_path: Any
 def test_many_files_take_one_short_line() -> None:
     assert named_files(["a.csv", "b.csv"]) == "a.csv, b.csv"
     assert named_files([f"h{n}.csv" for n in range(18)]) == "18 files, h0.csv to h17.csv"
+
+
+def test_values_have_the_digits_that_their_deviation_determines() -> None:
+    sigmas = (0.006, 0.00028, 0.5, 15.0, 250.0, 0.0096, 0.0, float("nan"))
+    assert list(map(decimals, sigmas)) == [3, 5, 1, 0, 0, 3, None, None]
+    modes = modalkit.ModalData(np.array([98.7654321, 1206.298]), np.array([0.02, 0.006]))
+    for text in (repr(modes), modes._repr_html_()):
+        assert "1206.298" in text and "98.765" in text and "0.006" in text
+    table = pd.DataFrame({"error [%]": [1.23456789], "sigma [Hz]": [0.5]})
+    assert formats(table) == {}
+
+
+def test_a_diagnosis_answers_in_five_lines() -> None:
+    found = complete(diagnosis_with("beam", "class"))
+    lines = repr(found).splitlines()
+    starts = [line.partition(":")[0] for line in lines[-5:]]
+    assert starts == ["Cause", "Where", "Closes", "Sure", "Next"]
+    assert lines[0].startswith("Diagnosis: ")
+    page = found._repr_html_()
+    assert page.count("<dt>") == 5 and "<table" in page
+
+
+def test_drawings_are_pictures_in_a_notebook() -> None:
+    drawn = modalkit.draw(model_of(3))
+    page = drawn._repr_html_()
+    assert page.count("<img ") == len(drawn) == page.count("data:image/png;base64,iVBOR")
+    assert repr(drawn).startswith("Drawings: frf (") and isinstance(drawn, dict)

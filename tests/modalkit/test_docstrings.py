@@ -67,6 +67,7 @@ def types_of(section: str, line: str) -> list[str]:
     return re.findall(r"(?<![\w.])[A-Z][A-Za-z0-9]*[a-z][A-Za-z0-9]*\b(?!\.)", bare)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("room", ROOMS)
 def test_types_in_docstrings_exist(room: str) -> None:
     unknown = [

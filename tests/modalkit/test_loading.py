@@ -42,6 +42,7 @@ def test_a_plain_import_loads_none_of_the_heavy_packages(room: str) -> None:
     assert not HEAVY & modules_after(f"import {room}")
 
 
+@pytest.mark.long
 def test_the_list_of_commands_loads_none_of_the_computing_packages() -> None:
     there = modules_after(command("--help"))
     assert not (HEAVY - {"pydantic_core"}) & there  # which some versions of typer bring along
@@ -169,6 +170,7 @@ def test_a_function_keeps_its_place_when_the_module_of_its_name_is_loaded() -> N
     modules_after(body)
 
 
+@pytest.mark.long
 def test_linear_algebra_that_is_loaded_late_keeps_to_one_thread() -> None:
     body = command("inspect", str(ROOT / "sample_data/beam_wet/beam_wet.uff"))
     check = "import scipy.linalg, threadpoolctl as t\nassert {i['num_threads'] for i in t.threadpool_info()} <= {1}"

@@ -24,6 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
 
 
+@pytest.mark.long
 def test_a_diagnosis_shows_itself_with_and_without_its_study() -> None:
     made = complete(diagnosis_with("beam", "class"))
     drawn = made.show()
@@ -34,6 +35,7 @@ def test_a_diagnosis_shows_itself_with_and_without_its_study() -> None:
     assert charts == ["gap", "place", "causes", "closing", "frfs"]
 
 
+@pytest.mark.long
 def test_modes_show_and_move() -> None:
     model = model_of(12)
     charts = {c["name"] for c in data_of(model.show().page)["charts"]}
@@ -46,6 +48,7 @@ def test_modes_show_and_move() -> None:
         bare.animate()
 
 
+@pytest.mark.long
 def test_an_update_shows_how_far_it_closed() -> None:
     result = modalkit.update_studies([ROOT / "sample_data" / "beam_dry" / "study.toml"])
     page = result.show().page
@@ -53,6 +56,7 @@ def test_an_update_shows_how_far_it_closed() -> None:
     assert "converged" in Reader(page).text
 
 
+@pytest.mark.long
 def test_a_study_moves_beside_its_model() -> None:
     session = modalkit.open_study(ROOT / "sample_data" / "beam_dry" / "study.toml")
     page = data_of(session.animate().page)["space"]["shapes"]["page"]

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -93,3 +96,32 @@ $ modalkit two
     assert (
         text[slice(*console.span)] == console.body and text.splitlines()[console.line - 1] == "$ modalkit one"
     )
+
+
+@pytest.fixture(scope="module")
+def site() -> Iterator[tuple[ModuleType, ModuleType]]:
+    """Return the modules that make parts of pages, and that keep them there."""
+    folder = str(ROOT / "docs" / "_ext")
+    sys.path.insert(0, folder)
+    try:
+        yield importlib.import_module("made"), importlib.import_module("reference")
+    finally:
+        sys.path.remove(folder)
+
+
+@pytest.mark.parametrize("name", ["commands", "effects", "study"])
+def test_a_page_of_reference_holds_what_is_made_of_it(site: tuple[ModuleType, ModuleType], name: str) -> None:
+    made, reference = site
+    text = (ROOT / "docs" / "reference" / f"{name}.md").read_text(encoding="utf-8")
+    assert made.renewed(text, reference.MAKERS) == text, "docs/_ext/commands.py --refresh PAGE renews it"
+    assert "<!-- end made -->" in text and "| --- |" in text
+
+
+def test_a_part_is_replaced_whether_it_is_kept_or_not(site: tuple[ModuleType, ModuleType]) -> None:
+    made, _ = site
+    makers = {"one": lambda: "1\n", "two": lambda: "2"}
+    page = "a\n<!-- made: one -->\nold\n<!-- end made -->\nb\n<!-- made: two -->\nc\n"
+    assert made.inserted(page, makers) == "a\n1\nb\n2\nc\n"
+    kept = made.renewed(page, makers)
+    assert kept == "a\n<!-- made: one -->\n\n1\n\n<!-- end made -->\nb\n<!-- made: two -->\nc\n"
+    assert made.renewed(kept, makers) == kept

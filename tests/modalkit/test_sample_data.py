@@ -158,6 +158,7 @@ def taped() -> Session:
     return open_study(study, with_baseline=False)
 
 
+@pytest.mark.long
 def test_the_identified_damping_is_the_published_one(taped: Session) -> None:
     assert taped.case.measured.damping == pytest.approx(DAMPING, rel=0.01)
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from acquisition.errors import StudyError
-from updating.effects.base import Channel, Effect, Parameter, Twin, Variant
+from updating.effects.base import Effect, Parameter, Twin, Variant
 from updating.effects.hypothesis import hypotheses_of
 from updating.effects.limits import PLACES, check_values
 from updating.effects.measurement.channel_gain import ChannelGain
@@ -20,6 +20,7 @@ from updating.effects.measurement.polarity import Polarity
 from updating.effects.measurement.position_error import PositionError
 from updating.effects.measurement.swapped_points import SwappedPoints
 from updating.effects.measurement.window import ExponentialWindow
+from updating.effects.mechanism import Channel
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.structure.absorber import Absorber
 from updating.effects.structure.axial_load import AxialLoad

@@ -11,12 +11,11 @@ from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
+from updating.effects.mechanism import Channel, Extent, Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.models.spec import Kind, Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-
-Channel = Literal["stiffness", "mass", "damping", "measurement"]
 
 Undoing = Literal["unclamped", "in air"]
 """Tests of the same specimen in which an effect may be gone: hung up free, and out of the fluid."""
@@ -27,6 +26,12 @@ AT_END = 0.01
 
 EDGES = ("low", "high")
 """Both ends, for a place: the edges of the structure."""
+
+PLACING = frozenset({"x", "y", "z", "extent", "extent_y", "from", "to"})
+"""Parameters that say where an effect sits and how far it reaches, not how large it is."""
+
+ALL_OVER = 0.5
+"""What reaches over so much of the length is no place [-]."""
 
 
 @dataclass(frozen=True)
@@ -197,6 +202,9 @@ class Effect(ABC):
     """Values beside the parameters that say which points are meant, by their node numbers."""
     named: ClassVar[tuple[str, ...]] = ()
     """Values beside the parameters that are names of the user's own model: of a region, a node set, a direction."""
+    exchanges: ClassVar[bool] = False
+    """Whether it exchanges the places of its points: accepted, the test has the places, and the model no effect."""
+
     of_sensor: ClassVar[bool] = False
     """Whether ``channel`` may be stated in place of the labels: one of several sensors (or forces) that stayed, by node
     and direction as ``5+Z``."""
@@ -210,6 +218,9 @@ class Effect(ABC):
     """How a sentence names it; left out, by its own name."""
     elsewhere: ClassVar[Mapping[Kind, str]] = MappingProxyType({})
     """Why it does not apply to a kind of model that is not among ``models``, where there is more to say."""
+    keeps_clamps: ClassVar[bool] = False
+    """Whether all that it changes needs only the columns of the clamped structure: neither it nor its priors release
+    anything."""
     fuller: ClassVar[bool] = False
     """Whether it is that the model's theory leaves something out."""
     undone_by: ClassVar[frozenset[Undoing]] = frozenset()
@@ -221,6 +232,8 @@ class Effect(ABC):
     screened: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({})
     """What is tried at every place before a search: prior quantiles of the parameters that are neither place nor size.
     Where it is empty, a search begins at :meth:`starts`."""
+    of_supports: ClassVar[bool] = False
+    """Whether what it sits at is a support."""
     repeats: ClassVar[bool] = False
     """Whether it may occur twice in a set of causes, at two places."""
     occurrence: int = 1
@@ -254,16 +267,18 @@ class Effect(ABC):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the departure from the nominal model at given values."""
 
+    def priors(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the parameters, kept with the specimen: every state of a search asks for them."""
+        return predictor.once(("parameters", self), lambda: self.parameters(predictor))
+
     def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
         """Take prior quantiles, one per parameter, to values of the parameters."""
-        parameters = self.parameters(predictor)
-        return {p.name: p.value(u) for p, u in zip(parameters, coordinates, strict=True)}
+        return {p.name: p.value(u) for p, u in zip(self.priors(predictor), coordinates, strict=True)}
 
     def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
         """Take values, half the range where one is not given, to prior quantiles: the inverse of :meth:`values`."""
         return [
-            p.coordinate(float(values[p.name])) if p.name in values else 0.5
-            for p in self.parameters(predictor)
+            p.coordinate(float(values[p.name])) if p.name in values else 0.5 for p in self.priors(predictor)
         ]
 
     def names_in(self, spec: Spec) -> set[str]:
@@ -329,6 +344,30 @@ class Effect(ABC):
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return where the effect sits in model axes, empty for one that is everywhere [m]."""
         return ()
+
+    def acts_in(self, predictor: Predictor, values: Values) -> Channel:
+        """Return where it acts with these values, ``channel`` as a rule."""
+        return self.channel
+
+    def extent(self, predictor: Predictor, values: Values) -> Extent:
+        """Return whether it acts all over the structure, at a place, at supports, or in the measuring chain."""
+        if self.channel == "measurement":
+            return "chain"
+        long = float(values.get("extent", 0.0)) >= ALL_OVER * predictor.spec.length
+        if long or not self.locations(predictor, values):
+            return "global"
+        return "edge" if self.of_supports else "local"
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return how large it is, in the currency that suits it first, then in those that other effects share.
+
+        Left out, in that of its first parameter that is no place and has no default.
+        """
+        own = (p for p in self.parameters(predictor) if p.name not in PLACING and p.default is None)
+        stated = (p for p in own if isinstance(values.get(p.name), int | float))
+        return tuple(
+            Size(p.name.replace("_", " "), float(values[p.name]), p.unit, p.scale_doubt) for p in stated
+        )[:1]
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return quantities that follow from the parameters, as name: (value, unit)."""

@@ -218,6 +218,17 @@ def mirror_images(spec: Spec, at: Place) -> tuple[Place, ...]:
     return tuple(found)
 
 
+def where_alike(predictor: Predictor, at: Place) -> tuple[Place, ...]:
+    """Return a place; where no shapes separate it from its mirror images, these too [m]."""
+    return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def as_places(points: FloatArray) -> tuple[Place, ...]:
+    """Return points (n, dim) with as many of the coordinates as the model has as places; the others are 0 [m]."""
+    padded = np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
+    return tuple((float(x), float(y), float(z)) for x, y, z in padded)
+
+
 def _symmetric(spec: Spec, axis: int) -> bool:
     """Return whether supports, masses and regions are their own mirror image along an axis."""
     if not spec.outlined:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Channel, Effect, Parameter, Values
+from updating.effects.base import EDGES, Effect, Parameter, Values
 from updating.effects.box import Place
+from updating.effects.mechanism import Channel
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import on_basis, region_centre
 from updating.models.decks.states import deck_state

@@ -21,6 +21,7 @@ from updating.frf_update.solve import CONVERGED, descend
 from updating.frf_update.stage import Stage
 from updating.frf_update.step import Step, last_steps
 from updating.models.state import NOMINAL, combine
+from updating.steps import SILENT, Steps
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.intervals import check_draws, with_intervals
 
@@ -57,6 +58,7 @@ def bootstrap_frf_update(
     parameters: Sequence[str] = (),
     stages: Sequence[Sequence[str]] | None = None,
     lines: int | Sequence[float] | None = None,
+    steps: Steps = SILENT,
 ) -> FrfBootstrap:
     """Update, then update again from FRFs drawn anew: of the hits where they are given, else from the noise.
 
@@ -74,6 +76,8 @@ def bootstrap_frf_update(
         Number of draws [-].
     draws : iterable of MeasuredFrfs, optional
         FRFs from hits drawn anew, on the lines of ``frfs``; left out, the variance of ``frfs`` is drawn.
+    steps : Steps
+        Where it is announced how many draws are updated.
 
     Raises
     ------
@@ -81,9 +85,9 @@ def bootstrap_frf_update(
         If there are fewer than twenty draws.
     """
     check_draws(n, better=100)
-    specimen, _, steps = solve_stages(case, frfs, parameters, stages, lines)
-    found = report(specimen, frfs, steps)
-    last = last_steps(steps)
+    specimen, _, solved = solve_stages(case, frfs, parameters, stages, lines)
+    found = report(specimen, frfs, solved)
+    last = last_steps(solved)
     whole = _whole(last, frfs)
     source = _from_noise(frfs, rng, n) if draws is None else draws
     test = case.measured
@@ -92,7 +96,7 @@ def bootstrap_frf_update(
             _repeat(
                 last, frfs, _levelled(_mounted(draw, whole, rng, test.repeatability), rng, test.calibration)
             )
-            for draw, _ in zip(source, range(n), strict=False)
+            for draw, _ in zip(source, steps.each(range(n)), strict=False)
         ]
     )
     if len(values) < n:

@@ -10,7 +10,9 @@ from scipy.sparse.linalg import splu
 
 from acquisition.arrays import FloatArray
 from updating.frf_update.step import Step, last_steps
-from updating.models.reduced import SMALL, Reduced, extend_basis
+from updating.models.columns import extend_basis
+from updating.models.reduced import Reduced
+from updating.models.reduction import SMALL
 from updating.models.state import State, combine
 from updating.prediction.predict import Predictor
 from updating.update.data.specimen import Specimen

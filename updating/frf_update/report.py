@@ -15,7 +15,7 @@ from updating.frf_update.columns import columns
 from updating.frf_update.evaluation import evaluate
 from updating.frf_update.result import FrfUpdate
 from updating.frf_update.stage import nominal
-from updating.frf_update.statistics import assess, misses, with_misses
+from updating.frf_update.statistics import StageStatistics, assess, misses, with_misses
 from updating.frf_update.step import Step, identified_ratios, last_steps
 from updating.models.state import NOMINAL, State, combine
 from updating.prediction.matching import mac_of_constants, match
@@ -44,15 +44,7 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
         Every stage as often as it was gone through, in order.
     """
     last = last_steps(steps)
-    test = specimen.measured
-    # a stage of damping alone looks at the lines where a mounting puts its peaks; misses hold the scatter too
-    separate = [s.stage.damps_alone or s.solved.discrepancy > 0 for s in last]
-    scatter = [0.0 if a else test.repeatability for a in separate]
-    results = [assess(s.stage, s.solved, test.calibration, r) for s, r in zip(last, scatter, strict=True)]
-    results = [
-        r if s.solved.discrepancy == 0 else with_misses(r, misses(specimen, s))
-        for r, s in zip(results, last, strict=True)
-    ]
+    results = _assessed(specimen, last)
     model_parameters = [k for step in last for k in step.stage.model_parameters]
     theta = np.concatenate([s.solved.theta for s in last])
     slope = np.array(
@@ -96,6 +88,19 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
         discrepancy=tuple(s.solved.discrepancy for s in last),
         state=state,
     )
+
+
+def _assessed(specimen: Specimen, last: Sequence[Step]) -> list[StageStatistics]:
+    """Return how well the parameters of each stage are known, the misses of the model among it."""
+    test = specimen.measured
+    # a stage of damping alone looks at the lines where a mounting puts its peaks; misses hold the scatter too
+    separate = [s.stage.damps_alone or s.solved.discrepancy > 0 for s in last]
+    scatter = [0.0 if a else test.repeatability for a in separate]
+    results = [assess(s.stage, s.solved, test.calibration, r) for s, r in zip(last, scatter, strict=True)]
+    return [
+        r if s.solved.discrepancy == 0 else with_misses(r, misses(specimen, s))
+        for r, s in zip(results, last, strict=True)
+    ]
 
 
 def _blocks(parts: Sequence[FloatArray]) -> FloatArray:
@@ -212,11 +217,13 @@ def _frac(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step], state: 
 
 
 def _warnings(specimen: Specimen, last: Sequence[Step], exact: bool) -> list[str]:
-    found = list(specimen.warnings)
+    """Return the warnings, those that make the parameters doubtful first."""
+    found = []
     for i, step in enumerate(last, start=1):
         if not step.solved.converged:
             found.append(
-                f"the parameters of stage {i} still move after {len(step.solved.history) - 1} iterations"
+                f"not converged: the parameters of stage {i} still change after {len(step.solved.history) - 1} "
+                "iterations"
             )
         if step.solved.discrepancy > NOTEWORTHY:
             found.append(
@@ -229,4 +236,4 @@ def _warnings(specimen: Specimen, last: Sequence[Step], exact: bool) -> list[str
             "an effect exists only in the reduced model: the frequencies after the update are those of "
             "the reduced model"
         )
-    return found
+    return [*found, *specimen.warnings]

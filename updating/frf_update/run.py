@@ -27,7 +27,8 @@ from updating.prediction.matching import match
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.building import build_specimen
 from updating.update.data.specimen import Specimen
-from updating.update.parameters.parameters import ParameterSet, build_parameter_set, only_damps
+from updating.update.parameters.named import build_parameter_set, only_damps
+from updating.update.parameters.parameters import ParameterSet
 
 PASSES = 2
 """How often a stage chooses its lines: on the nominal model, and again where that has brought it."""
@@ -155,11 +156,11 @@ def _without_odd(
     better = max(s.solved.discrepancy for s in last_steps(again)) < ODD_GAIN * off
     nodes, what = (
         specimen.measured.nodes,
-        "is left out" if better else "was kept, as the rest agree no better",
+        "is left out" if better else "was kept, because the others do not agree better without it",
     )
     statement = [
-        f"the FRF at node {nodes[frfs.seen[i]]} by the force at node {nodes[frfs.hit[i]]} has {how} of the others "
-        f"beside the model and {what}; check its channel, calibration and direction"
+        f"the FRF at node {nodes[frfs.seen[i]]} by the force at node {nodes[frfs.hit[i]]} has {how} of the others, "
+        f"relative to the model, and {what}; check its channel, calibration and direction"
         for i, how in sorted(found.items())
     ]
     specimen = replace(specimen, warnings=(*specimen.warnings, *statement))

@@ -96,6 +96,8 @@ class View:
         Which of these each unpaired measured mode is, -1 where none of them; empty where the state adds no modes.
     offers : (n_unpaired,) int array
         Which of these each of the others may be, -1 where none of them.
+    places : (m,) array
+        How far the points moved lie from where they are stated in it; empty where they do not [standard deviations].
     """
 
     now: Prediction
@@ -104,6 +106,7 @@ class View:
     whole: Prediction | None = None
     claims: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     offers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    places: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)

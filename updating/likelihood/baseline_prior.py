@@ -228,21 +228,22 @@ class Before:
         """Return the misses of the present constants according to the baseline.
 
         It is the structure that the model misses, so that the present measurement reads what is missed as it reads the
-        rest: at the points where it really is, with its own signs and levels.
+        rest: at the points where it really is, with its own signs and levels in place of the baseline's.
 
         Parameters
         ----------
         now : Prediction
             The present modes.
         state : State
-            Of the present measurement.
+            Of the present measurement, all that is put into the model included.
         """
         here, there = self._read(state)
         missed, variance = np.zeros_like(now.constants), np.zeros_like(now.constants)
         known = np.zeros_like(now.constants_by)
         if not (self.measured.absolute and self.baseline.absolute and len(here)):
             return Missed(missed, variance, known)
-        gain = measurement_chain(self.measured, state).gain[here, None]
+        read = measurement_chain(self.baseline, self._corrected.base).gain[there, None]
+        gain = measurement_chain(self.measured, state).gain[here, None] / read
         predicted = self.prediction.constants[there]
         error = self.baseline.constants[there] - predicted
         # of a mode that was not predicted to be seen, its sensor on a node, what was missed is all there is

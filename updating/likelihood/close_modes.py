@@ -45,21 +45,35 @@ class CloseModes:
             What predicted constants are multiplied by [kg].
         """
         (first, second), angle = self._pairs
-        before, count = self.setting.nominal, level.shape[1]
         columns = np.zeros((*level.shape, len(angle)))
-        for mode, other, turn in ((first, second, angle), (second, first, -angle)):
-            seen = np.flatnonzero(mode < count)
-            change = self._change(now, mode[seen], other[seen])
-            columns[:, mode[seen], seen] = turn[seen] * level[:, mode[seen]] * change
+        if not len(angle):
+            return columns.reshape(level.size, 0)
+        both = np.flatnonzero(second < level.shape[1])
+        seen, hit = self._with_missed(now)
+        change = self._change(now, first, seen[:, second], hit[:, second])
+        columns[:, first, np.arange(len(angle))] = angle * level[:, first] * change
+        i, j = first[both], second[both]
+        columns[:, j, both] = -angle[both] * level[:, j] * self._change(now, j, now.seen[:, i], now.hit[:, i])
         # shapes have no sign of their own: a column that leaps would be no smooth function of the state
-        alike = np.sum(self._change(now, first, second) * self._change(before, first, second), axis=0)
+        alike = np.sum(change * self._nominal_change, axis=0)
         return np.asarray(np.where(alike < 0, -1.0, 1.0) * columns).reshape(level.size, len(angle))
 
-    def _change(self, now: Prediction, mode: IntArray, other: IntArray) -> FloatArray:
+    def _change(self, now: Prediction, mode: IntArray, seen: FloatArray, hit: FloatArray) -> FloatArray:
         """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg]."""
+        own = now.gain[:, mode], now.seen[:, mode], now.hit[:, mode]
+        return taken_up(*own, seen, hit, self.setting.measured.hit < 0)
+
+    def _with_missed(self, now: Prediction) -> tuple[FloatArray, FloatArray]:
+        """Return shapes seen and hit of the measured modes and of those that the test misses, (n_frf, all) each."""
         lost = self.setting.missed
-        seen, hit = np.hstack([now.seen, lost.seen])[:, other], np.hstack([now.hit, lost.hit])[:, other]
-        return taken_up(now.select(mode), seen, hit, self.setting.measured.hit < 0)
+        return np.hstack([now.seen, lost.seen]), np.hstack([now.hit, lost.hit])
+
+    @cached_property
+    def _nominal_change(self) -> FloatArray:
+        """What the nominal constants of the first mode of each pair change by, (n_frf, k) [1/kg]."""
+        (first, second), _ = self._pairs
+        seen, hit = self._with_missed(self.setting.nominal)
+        return self._change(self.setting.nominal, first, seen[:, second], hit[:, second])
 
     @cached_property
     def _pairs(self) -> tuple[IntArray, FloatArray]:
@@ -87,16 +101,25 @@ def turn(f: FloatArray, g: FloatArray, scatter: FloatArray) -> FloatArray:
     return np.minimum(2 * scatter * f * g / np.maximum(far, 1e-12 * f * g), 1.0)
 
 
-def taken_up(now: Prediction, seen: FloatArray, hit: FloatArray, bare: BoolArray) -> FloatArray:
+def taken_up(
+    gain: FloatArray,
+    own_seen: FloatArray,
+    own_hit: FloatArray,
+    seen: FloatArray,
+    hit: FloatArray,
+    bare: BoolArray,
+) -> FloatArray:
     """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg].
 
     Parameters
     ----------
-    now : Prediction
-        The k modes.
+    gain : (n_frf, k) array
+        Of the k modes, constants over the product of shapes [-].
+    own_seen, own_hit : (n_frf, k) arrays
+        Their shapes at the points seen and hit [1/sqrt(kg)].
     seen, hit : (n_frf, k) arrays
-        The others' shapes at the points seen and hit [1/sqrt(kg)].
+        The others' shapes there [1/sqrt(kg)].
     bare : (n_frf,) bool array
         Where a constant is a shape and has no point that is hit.
     """
-    return np.asarray(now.gain * (seen * now.hit + now.seen * np.where(bare[:, None], 0.0, hit)))
+    return np.asarray(gain * (seen * own_hit + own_seen * np.where(bare[:, None], 0.0, hit)))

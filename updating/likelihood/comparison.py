@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import pairwise, product
 from typing import TypeVar
 
 import numpy as np
@@ -55,6 +55,8 @@ class Block:
         What of the variance is a doubt of the channel of which only the most is judged [-]; left out, nothing.
     judged_own : bool
         Whether the ``own`` nuisances are of that doubt, too.
+    places : (m,) int array, optional
+        Which of the ``own`` nuisances are where points lie; left out, none.
     """
 
     channel: str
@@ -70,6 +72,7 @@ class Block:
     unseen: FloatArray | None = None
     judged: FloatArray | None = None
     judged_own: bool = False
+    places: IntArray | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -99,6 +102,9 @@ class Comparison:
         Which nuisances are named doubts: tolerances, level of damping, calibration.
     tolerances : (t,) int array
         Which of them all data doubt alike: tolerances of the model, masses and places of its bodies.
+    linearised : (l,) int array, optional
+        Those about whose most probable values the prediction is linearised: these, and where points lie, test by test;
+        left out, these alone.
     idealised : (n,) array, optional
         What of the variance the candidate's idealisation adds, at the most [-]; left out, its size is settled.
     idle : (n,) bool array, optional
@@ -127,6 +133,12 @@ class Comparison:
     unseen: FloatArray | None = None
     judged: FloatArray | None = None
     judged_columns: BoolArray | None = None
+    linearised: IntArray | None = None
+
+    @property
+    def moving(self) -> IntArray:
+        """Which nuisances the prediction is linearised about, (l,)."""
+        return self.tolerances if self.linearised is None else self.linearised
 
     @property
     def prediction(self) -> Prediction:
@@ -170,7 +182,10 @@ class Comparison:
         one = self.channels_settled(judged)
         if one.idealised is None and one.unseen is None:
             return one
-        return replace(one, variance=one.variances([(share, unseen)])[0], idealised=None, unseen=None)
+        variance = one.variance
+        for part, size in ((one.idealised, share), (one.unseen, unseen)):
+            variance = variance if part is None else variance - (1 - size**2) * part
+        return replace(one, variance=variance, idealised=None, unseen=None)
 
     def channels_settled(self, judged: Sequence[tuple[int, float]] = ()) -> Comparison:
         """Return the comparison with the doubt of each channel at a share of the most that it may be, by number [-]."""
@@ -195,15 +210,6 @@ class Comparison:
             own = np.pad(own, (before.shape[1], after.shape[1]))
         return replace(self, nuisance=whole, judged_columns=own)
 
-    def variances(self, sizes: Sequence[tuple[float, float]]) -> FloatArray:
-        """Return the variance at some ``sizes`` of the two doubts, shape (n_sizes, n) [-]."""
-        found = np.tile(self.variance, (len(sizes), 1))
-        left = 1 - np.array(sizes) ** 2
-        for part, of in zip((self.idealised, self.unseen), left.T, strict=True):
-            if part is not None:
-                found -= of[:, None] * part
-        return found
-
     @property
     def sizes(self) -> tuple[tuple[float, float], ...]:
         """Shares at which the two doubts are tried, each as likely: of the idealisation, of what no scatter shows."""
@@ -211,8 +217,75 @@ class Comparison:
         return tuple(product(idealised, (1.0,) if self.unseen is None else UNSEEN_SHARES))
 
 
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where the data and the nuisances of each block stand, and what they are: the same of all states of one test.
+
+    Parameters
+    ----------
+    rows, named, own : tuples of slice
+        Of each block: its data, its nuisances that bear a name, and its others.
+    shape : (int, int)
+        Number of data and of nuisances.
+    channel, mode, source, doubts, tolerances, linearised, judged_columns
+        As in :class:`Comparison`.
+    """
+
+    rows: tuple[slice, ...]
+    named: tuple[slice, ...]
+    own: tuple[slice, ...]
+    shape: tuple[int, int]
+    channel: IntArray
+    mode: IntArray
+    source: IntArray
+    doubts: IntArray
+    tolerances: IntArray
+    linearised: IntArray
+    judged_columns: BoolArray
+
+    @classmethod
+    def of(cls, blocks: Sequence[Block], count: int) -> Layout:
+        """Return the layout of blocks behind ``count`` nuisances that all data have in common."""
+        sizes = [len(block.residual) for block in blocks]
+        rows = np.cumsum([0, *sizes])
+        named = np.cumsum([count, *(block.named.shape[1] for block in blocks)])
+        own = np.cumsum([named[-1], *(block.own.shape[1] for block in blocks)])
+        source = [np.full(len(b.residual), -1) if b.source is None else b.source for b in blocks]
+        places = [own[i] + block.places for i, block in enumerate(blocks) if block.places is not None]
+        judged = np.zeros(own[-1], dtype=bool)
+        judged[named[-1] :] = np.repeat([block.judged_own for block in blocks], np.diff(own))
+        return cls(
+            rows=_slices(rows),
+            named=_slices(named),
+            own=_slices(own),
+            shape=(int(rows[-1]), int(own[-1])),
+            channel=np.repeat([CHANNELS.index(block.channel) for block in blocks], sizes),
+            mode=np.concatenate([block.mode for block in blocks]),
+            source=np.concatenate(source),
+            doubts=np.arange(named[-1]),
+            tolerances=np.arange(count),
+            linearised=np.concatenate([np.arange(count), *places]),
+            judged_columns=judged,
+        )
+
+    def filled(self, parts: Sequence[_Array | None], nothing: float) -> _Array | None:
+        """Return what all blocks have of a quantity in one, ``nothing`` where one has none; None where none has any."""
+        known = [(part, here) for part, here in zip(parts, self.rows, strict=True) if part is not None]
+        if not known:
+            return None
+        whole = np.full(self.shape[0], nothing)
+        for part, here in known:
+            whole[here] = part
+        return whole
+
+
+def _slices(bounds: IntArray) -> tuple[slice, ...]:
+    return tuple(slice(*ends) for ends in pairwise(bounds.tolist()))
+
+
 def assemble(
     blocks: Sequence[Block],
+    layout: Layout,
     sigmas: FloatArray,
     shift: FloatArray,
     prediction: Prediction,
@@ -224,6 +297,8 @@ def assemble(
     ----------
     blocks : sequence of Block
         One per channel, in the order of ``CHANNELS``.
+    layout : Layout
+        Where each goes.
     sigmas : (n_names,) array
         Standard deviations of what all data doubt alike [-, of places m].
     shift : (n_names,) array
@@ -231,37 +306,30 @@ def assemble(
     prediction, scale_prior
         As in :class:`Comparison`.
     """
-    rows = np.cumsum([0, *(len(block.residual) for block in blocks)])
     count = len(sigmas)
-    named = np.cumsum([count, *(block.named.shape[1] for block in blocks)])
-    own = np.cumsum([named[-1], *(block.own.shape[1] for block in blocks)])
-    nuisance = np.zeros((rows[-1], own[-1]))
-    for i, block in enumerate(blocks):
-        here = slice(rows[i], rows[i + 1])
+    nuisance, (residual, variance) = np.zeros(layout.shape), np.zeros((2, layout.shape[0]))
+    for block, here, named, own in zip(blocks, layout.rows, layout.named, layout.own, strict=True):
+        residual[here], variance[here] = block.residual, block.variance
         nuisance[here, :count] = block.factors * sigmas
-        nuisance[here, named[i] : named[i + 1]] = block.named
-        nuisance[here, own[i] : own[i + 1]] = block.own
+        nuisance[here, named] = block.named
+        nuisance[here, own] = block.own
     return Comparison(
-        residual=np.concatenate([block.residual for block in blocks]) + nuisance[:, :count] @ shift,
+        residual=residual + nuisance[:, :count] @ shift if shift.any() else residual,
         nuisance=nuisance,
-        variance=np.concatenate([block.variance for block in blocks]),
-        channel=np.concatenate(
-            [np.full(len(block.residual), CHANNELS.index(block.channel)) for block in blocks]
-        ),
-        mode=np.concatenate([block.mode for block in blocks]),
-        source=np.concatenate([_source(block) for block in blocks]),
+        variance=variance,
+        channel=layout.channel,
+        mode=layout.mode,
+        source=layout.source,
         predictions=(prediction,),
         scale_prior=scale_prior,
-        doubts=np.arange(named[-1]),
-        tolerances=np.arange(count),
-        idealised=_filled([(block.idealised, len(block.residual)) for block in blocks], 0.0),
-        idle=_filled([(block.idle, len(block.residual)) for block in blocks], False),
-        unseen=_filled([(block.unseen, len(block.residual)) for block in blocks], 0.0),
-        judged=_filled([(block.judged, len(block.residual)) for block in blocks], 0.0),
-        judged_columns=np.concatenate(
-            [np.zeros(named[-1], dtype=bool)]
-            + [np.full(block.own.shape[1], block.judged_own) for block in blocks]
-        ),
+        doubts=layout.doubts,
+        tolerances=layout.tolerances,
+        linearised=layout.linearised,
+        idealised=layout.filled([block.idealised for block in blocks], 0.0),
+        idle=layout.filled([block.idle for block in blocks], False),
+        unseen=layout.filled([block.unseen for block in blocks], 0.0),
+        judged=layout.filled([block.judged for block in blocks], 0.0),
+        judged_columns=layout.judged_columns,
     )
 
 
@@ -273,10 +341,6 @@ def _filled(parts: Sequence[tuple[_Array | None, int]], nothing: float) -> _Arra
     if all(part is None for part, _ in parts):
         return None
     return np.concatenate([np.full(count, nothing) if part is None else part for part, count in parts])
-
-
-def _source(block: Block) -> IntArray:
-    return np.full(len(block.residual), -1) if block.source is None else block.source
 
 
 def join(parts: Sequence[Comparison]) -> Comparison:
@@ -309,6 +373,7 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         tolerances=np.concatenate(
             [part.tolerances + first for part, first in zip(parts, starts, strict=False)]
         ),
+        linearised=np.concatenate([part.moving + first for part, first in zip(parts, starts, strict=False)]),
         idealised=_filled([(part.idealised, len(part.residual)) for part in parts], 0.0),
         idle=_filled([(part.idle, len(part.residual)) for part in parts], False),
         unseen=_filled([(part.unseen, len(part.residual)) for part in parts], 0.0),

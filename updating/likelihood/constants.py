@@ -7,9 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
-from updating.likelihood.baseline_prior import Missed
 from updating.likelihood.close_modes import CloseModes
 from updating.likelihood.comparison import Block
 from updating.likelihood.hit_scatter import level_errors, own_variance
@@ -71,7 +70,8 @@ class Constants(Quantity):
         return own_variance(test, scatter) + (level_errors(test, scatter) * test.constants) ** 2
 
     @cached_property
-    def _places(self) -> Places:
+    def places(self) -> Places:
+        """What is known of where points are."""
         return Places(self.setting)
 
     @cached_property
@@ -88,63 +88,94 @@ class Constants(Quantity):
 
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
-        test, now, scale = self.setting.measured, view.now, self.scale
+        test, now, names = self.setting.measured, view.now, len(self.setting.names)
         constants, by, missed = self._corrected(view)
         level = self._level(constants, view)
         predicted, by = constants * level, by * level[:, :, None]
-        own_errors = self._own / scale**2 + missed.variance * level**2 + LEAST_CONSTANT_NOISE**2
-        variance = own_errors + self._late(view) ** 2
-        uneven, louder = self._idealised(predicted, view.doubt.fidelity)
+        variance = self._known_errors if missed is None else self._known_errors + missed * level**2
+        if view.state.delay:
+            variance = variance + self._late(view.state.delay) ** 2
+        by_place = self.places.columns(now, level, self._measured)
         own = [
-            *self._places.columns(now, level, test.constants / scale),
+            *by_place,
             self._nodes.columns(now, level),
             self._close_modes.columns(now, level),
             self._missed_modes.columns(now, level),
-            louder,
         ]
+        uneven = None
+        if view.doubt.fidelity:
+            uneven, louder = self._idealised(predicted, view.doubt.fidelity)
+            variance = variance + uneven
+            own.append(louder)
         gain = self._gains(predicted)
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))
+        moved, ahead = self.places.movable, 0 if test.absolute else own[0].shape[1]
+        residual = (self._measured - predicted).ravel()
+        if len(view.places):
+            residual = residual + np.hstack(by_place)[:, moved] @ view.places
+        mode, source = self._labels
         return Block(
             "frf",
-            (test.constants / scale - predicted).ravel(),
-            (variance + uneven).ravel(),
-            by.reshape(predicted.size, len(self.setting.names)),
+            residual,
+            variance.ravel(),
+            by.reshape(predicted.size, names),
             gain,
             np.hstack(own),
-            np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel(),
-            np.repeat(np.arange(len(predicted)), predicted.shape[1]),
-            uneven.ravel() if view.doubt.fidelity else None,
-            unseen=np.full(predicted.size, LEAST_CONSTANT_NOISE**2),
+            mode,
+            source,
+            None if uneven is None else uneven.ravel(),
+            unseen=self._unseen,
+            places=ahead + moved,
         )
 
-    def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, Missed]:
-        """Return predicted constants and their sensitivities, what a baseline has determined included, and what that
-        is.
+    @cached_property
+    def _measured(self) -> FloatArray:
+        """Measured constants over their r.m.s., (n_frf, n_modes) [-]."""
+        return self.setting.measured.constants / self.scale
+
+    @cached_property
+    def _known_errors(self) -> FloatArray:
+        """Variance of each constant that no state changes, (n_frf, n_modes) [-]."""
+        return self._own / self.scale**2 + LEAST_CONSTANT_NOISE**2
+
+    @cached_property
+    def _labels(self) -> tuple[IntArray, IntArray]:
+        """Mode and FRF of each datum, (n,) each."""
+        frf, mode = np.indices(self._measured.shape)
+        return mode.ravel(), frf.ravel()
+
+    @cached_property
+    def _unseen(self) -> FloatArray:
+        """Variance of what no scatter shows, (n,) [-]."""
+        return np.full(self._measured.size, LEAST_CONSTANT_NOISE**2)
+
+    def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        """Return predicted constants and their sensitivities, what a baseline has determined included, and its
+        variance, None without one.
         """
         now = view.now
         if self.setting.before is None:
-            nothing = np.zeros_like(now.constants)
-            return now.constants, now.constants_by, Missed(nothing, nothing, now.constants_by)
+            return now.constants, now.constants_by, None
         missed = self.setting.before.shapes(now, view.state)
-        return now.constants + missed.constants, now.constants_by - missed.known, missed
+        return now.constants + missed.constants, now.constants_by - missed.known, missed.variance
 
     def _level(self, constants: FloatArray, view: View) -> FloatArray:
         """Return what predicted constants are multiplied by: sign and scale, and where no level is known the best."""
-        test, scale = self.setting.measured, self.scale
-        signs = self.phases.factor(view) if self.phases.present else np.broadcast_to(1.0, constants.shape)
-        level = signs * test.same_signs(constants) / scale
+        test, measured = self.setting.measured, self._measured
+        level = test.same_signs(constants) / self.scale
+        level = (
+            self.phases.factor(view) * level if self.phases.present else np.tile(level, (len(constants), 1))
+        )
         if not test.absolute:
-            return np.asarray(level * _projection(test.constants / scale, constants * level, axis=0))
+            return np.asarray(level * _projection(measured, constants * level, axis=0))
         if test.calibration > UNKNOWN_LEVEL:
-            return np.asarray(
-                level * float(_projection(test.constants / scale, constants * level, axis=None))
-            )
-        return np.asarray(level)
+            return np.asarray(level * float(_projection(measured, constants * level, axis=None)))
+        return level
 
-    def _late(self, view: View) -> FloatArray:
-        """Return the error that fitting a delayed constant makes, (n_modes,) [-]."""
-        late = 2 * np.pi * self.setting.measured.frequency * abs(view.state.delay)
+    def _late(self, delay: float) -> FloatArray:
+        """Return the error that fitting a constant that is late by ``delay`` [s] makes, (n_modes,) [-]."""
+        late = 2 * np.pi * self.setting.measured.frequency * abs(delay)
         return np.asarray(DELAY_FIT_ERROR * np.minimum(late, np.pi))
 
     def _idealised(self, predicted: FloatArray, fidelity: float) -> tuple[FloatArray, FloatArray]:
@@ -152,14 +183,17 @@ class Constants(Quantity):
 
         A change of the modes' levels errs as a whole, what is no mere change of level point by point.
         """
-        if not fidelity:
-            return np.zeros_like(predicted), np.zeros((predicted.size, 0))
-        nominal = self.setting.nominal.constants
-        before = nominal * self.setting.measured.same_signs(nominal) / self.scale
+        before = self._nominal
         share = _projection(predicted, before, axis=0)
         return (fidelity * (predicted - share * before)) ** 2, (fidelity * (share - 1) * before).reshape(
             -1, 1
         )
+
+    @cached_property
+    def _nominal(self) -> FloatArray:
+        """The nominal constants over the measured r.m.s., (n_frf, n_modes) [-]."""
+        nominal = self.setting.nominal.constants
+        return nominal * self.setting.measured.same_signs(nominal) / self.scale
 
     def _gains(self, predicted: FloatArray) -> FloatArray:
         """Return the gain of the whole test, or of each mode where only shapes are known."""

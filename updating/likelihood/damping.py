@@ -45,6 +45,16 @@ class Dampings(Quantity):
 
     def block(self, view: View) -> Block:
         """Return ln zeta beside a state, the level of the expected damping a named doubt."""
+        return self._beside(view) if len(self.rows) else self._nothing
+
+    @cached_property
+    def _nothing(self) -> Block:
+        """The block of a test without such data."""
+        none, empty = np.zeros(0), np.zeros((0, 0))
+        factors = np.zeros((0, len(self.setting.names)))
+        return Block("damping", none, none, factors, empty, empty, self.rows, judged=none)
+
+    def _beside(self, view: View) -> Block:
         rows, test, now = self.rows, self.setting.measured, view.now
         relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=UNSTATED_DAMPING_NOISE)
         expected = np.maximum(now.damping[rows], LEAST_DAMPING)
@@ -61,7 +71,7 @@ class Dampings(Quantity):
             np.log(test.damping[rows] / expected),
             variance,
             np.zeros((len(rows), len(self.setting.names))),
-            level if len(rows) else np.zeros((0, 0)),
+            level,
             np.zeros((len(rows), 0)),
             rows,
             judged=self._mounting(now)[rows] ** 2,

@@ -7,6 +7,7 @@ noise behind the hit fade, which no damper does.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,7 +37,14 @@ class FadingNoise(Quantity):
 
     def block(self, view: View) -> Block:
         """Return by how much the noise fades more than the window of a state has it [standard deviations]."""
-        fading, decay = self.setting.measured.fading, view.state.decay
+        return self._beside(view.state.decay) if view.state.decay else self._beside_no_window
+
+    @cached_property
+    def _beside_no_window(self) -> Block:
+        return self._beside(0.0)
+
+    def _beside(self, decay: float) -> Block:
+        fading = self.setting.measured.fading
         assert fading is not None
         off = (fading.log_ratio - fading.expected(decay)) / fading.sigma(decay)
         return Block(

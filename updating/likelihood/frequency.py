@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,17 +38,11 @@ class Frequencies(Quantity):
     def block(self, view: View) -> Block:
         """Return ln f beside a state; what mesh, theory and a candidate's idealisation leave off are named doubts."""
         test, now, before = self.setting.measured, view.now, self.setting.before
-        variance = (test.frequency_sigma / test.frequency) ** 2 + max(
-            test.repeatability, LEAST_FREQUENCY_NOISE
-        ) ** 2
-        by = now.log_frequency_by
+        variance, by = self._known_errors, now.log_frequency_by
+        named, idealised = self.common, None
         if before is not None:
             doubt, known = before.frequency(now)
             variance, by = variance + doubt, by - known
-        variance = variance + self.further
-        n = len(test.frequency)
-        named, idealised = self.common, None
-        if before is not None:
             named = np.column_stack([named, before.common(now)])
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
@@ -55,6 +50,14 @@ class Frequencies(Quantity):
             variance, named = variance + doubtful**2, np.column_stack([named, doubtful])
             idealised = doubtful**2
         residual = np.log(test.frequency / now.frequency)
+        modes = np.arange(len(residual))
         return Block(
-            "frequency", residual, variance, by, named, np.zeros((n, 0)), np.arange(n), idealised=idealised
+            "frequency", residual, variance, by, named, np.zeros((len(modes), 0)), modes, idealised=idealised
         )
+
+    @cached_property
+    def _known_errors(self) -> FloatArray:
+        """Variance of ln f that no state changes, (n_modes,) [-]."""
+        test = self.setting.measured
+        mounting = max(test.repeatability, LEAST_FREQUENCY_NOISE)
+        return (test.frequency_sigma / test.frequency) ** 2 + mounting**2 + self.further

@@ -12,15 +12,17 @@ of, and one that is not still has it. So are doubts of single channels, see :mod
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
+from updating.likelihood.bordered import Bordered, bordered
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.judged import SeparateChannel, separate_channels
-from updating.likelihood.separate import Beside, separate
+from updating.likelihood.judged import separate_channels
+from updating.likelihood.separate import Beside
+from updating.likelihood.stack import Pattern, Stack, pattern_of
 from updating.thresholds import DOUBT_SHARES, LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
 
 
@@ -77,49 +79,73 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     Marginal
         With a likelihood of zero where the prediction is not finite.
     """
-    if not _sound(comparison):
-        nothing = np.zeros(comparison.nuisance.shape[1])
-        return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
-    shapes = comparison.scaled if keep is None else comparison.scaled & keep
-    scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
-    channels = separate_channels(comparison, keep, comparison.sizes)
-    parts = gaussian(comparison, scales, _without(comparison, keep, channels), sizes=comparison.sizes)
-    prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
-    score = parts.log_likelihood + prior - np.log(len(parts.sizes))
+    return marginals([comparison], keep)[0]
+
+
+def marginals(comparisons: Sequence[Comparison], keep: BoolArray | None = None) -> list[Marginal]:
+    """Integrate the same out of many comparisons of the same data: those whose nuisances change the same data at once.
+
+    Parameters
+    ----------
+    comparisons, keep
+        As in :func:`marginal`.
+    """
+    found = [
+        Marginal(-np.inf, np.inf, np.zeros(c.nuisance.shape[1]), len(c.residual), 1.0) for c in comparisons
+    ]
+    alike: dict[tuple[Pattern, bool, bool], list[int]] = {}
+    for i, one in enumerate(comparisons):
+        if _sound(one):
+            key = pattern_of(one, keep), one.idealised is None, one.unseen is None
+            alike.setdefault(key, []).append(i)
+    for (pattern, *_), members in alike.items():
+        stack = Stack.of([comparisons[i] for i in members])
+        for i, marginal_likelihood in zip(members, _summed(stack, pattern), strict=True):
+            found[i] = marginal_likelihood
+    return found
+
+
+def _summed(stack: Stack, pattern: Pattern) -> list[Marginal]:
+    """Return the marginals of a stack, sizes of all doubts and scales of the noise of the shapes summed over."""
+    scales = SHAPE_NOISE_SCALES if pattern.shapes else (1.0,)
+    sizes = stack.first.sizes
+    variance = stack.variances(sizes)
+    channels = separate_channels(stack, pattern.channels, variance)
+    parts = _integrated(stack, pattern, scales, variance)
+    prior = np.log(stack.first.scale_prior if len(scales) > 1 else (1.0,))
+    score = parts.log_likelihood + prior - np.log(len(sizes))
     for one in channels:
-        score = score + one.summed[:, None]
-    top = np.unravel_index(int(np.argmax(score)), score.shape)
-    found = _joined(parts.at(int(top[0]), int(top[1])), channels, int(top[0]))
-    return replace(found, log_likelihood=float(np.logaddexp.reduce(score, axis=None)))
-
-
-def _without(
-    comparison: Comparison, keep: BoolArray | None, channels: Sequence[SeparateChannel]
-) -> BoolArray | None:
-    """Return which data (n,) are in none of the separate channels; None for all."""
-    if not channels:
-        return keep
-    others = ~np.isin(comparison.channel, [one.channel for one in channels])
-    return others if keep is None else others & keep
-
-
-def _joined(found: Marginal, channels: Sequence[SeparateChannel], size: int) -> Marginal:
-    """Return a marginal with the separate channels in it, at one size of the other doubts."""
-    shift = found.shift.copy()
-    chi2, count, judged = found.chi2, found.count, []
+        score = score + one.summed[..., None]
+    flat, each = score.reshape(len(score), -1), np.arange(len(score))
+    total = np.logaddexp.reduce(flat, axis=1)
+    size, scale = np.unravel_index(np.argmax(flat, axis=1), score.shape[1:])
+    shift, chi2 = parts.shift(size, scale), parts.fit.chi2[each, size, scale]
+    shares: list[list[tuple[int, float]]] = []
     for one in channels:
-        best = int(np.argmax(one.log_likelihood[size]))
-        shift[one.columns] = one.shift[size, best]
-        chi2, count = chi2 + float(one.chi2[size, best]), count + one.count
-        judged.append((one.channel, DOUBT_SHARES[best]))
-    return replace(found, chi2=chi2, count=count, shift=shift, judged=tuple(judged))
+        best = np.argmax(one.log_likelihood[each, size], axis=1)
+        shift[:, one.own.columns] = one.parts.shift((each, size, best))
+        chi2 = chi2 + one.parts.chi2[each, size, best]
+        shares.append([(one.own.channel, DOUBT_SHARES[i]) for i in best])
+    count = len(pattern.rows) + sum(len(one.rows) for one in pattern.channels)
+    return [
+        Marginal(
+            log_likelihood=float(total[n]),
+            chi2=float(chi2[n]),
+            shift=shift[n],
+            count=count,
+            scale=scales[scale[n]],
+            share=sizes[size[n]][0],
+            unseen=sizes[size[n]][1],
+            judged=tuple(one[n] for one in shares),
+        )
+        for n in each.tolist()
+    ]
 
 
 def _sound(comparison: Comparison) -> bool:
     """Return whether a prediction is finite and no sensitivity is beyond all measure."""
-    whole = np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()
     return bool(
-        whole
+        np.isfinite(comparison.residual).all()
         and np.isfinite(comparison.variance).all()
         and np.abs(comparison.nuisance).max(initial=0.0) < LARGEST_SENSITIVITY
     )
@@ -127,57 +153,40 @@ def _sound(comparison: Comparison) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """A comparison with its nuisances integrated out, at sizes of the doubts and scales of the noise of the shapes.
+    """Comparisons with their nuisances integrated out, at sizes of the doubts and scales of the noise of the shapes.
 
     Parameters
     ----------
-    sizes : (b,) tuple of (float, float)
-        Shares of the two doubts, see :attr:`Comparison.sizes` [-].
-    scales : (s,) tuple of float
-        Scales of the noise of the shapes [-].
-    log_likelihood, chi2 : (b, s) arrays
-        As in :class:`Marginal`.
-    precision : (b, s, c + 1, c + 1) array
-        Of the nuisances that all data have in common; in the last row and column what the residual pulls [-].
+    log_likelihood : (a, b, s) array
+        As in :class:`Marginal`, of comparisons, sizes and scales [-].
+    fit : Bordered
+        The nuisances that all data have in common, (a, b, s).
     own : Beside
         The other nuisances.
-    common : (c,) int array
-        Which are those in common.
-    shape : (int, int)
-        Number of data and of nuisances.
+    scales : (s,) array
+        Scales of the noise of the shapes [-].
+    count : int
+        Number of nuisances.
     """
 
-    sizes: tuple[tuple[float, float], ...]
-    scales: tuple[float, ...]
     log_likelihood: FloatArray
-    chi2: FloatArray
-    precision: FloatArray
+    fit: Bordered
     own: Beside
-    common: IntArray
-    shape: tuple[int, int]
+    scales: FloatArray
+    count: int
 
-    def at(self, i: int, k: int) -> Marginal:
-        """Return the marginal at the i-th size and k-th scale, with its most probable nuisances."""
-        precision, scale = self.precision[i, k], self.scales[k]
-        shift = np.zeros(self.shape[1])
-        shift[self.common] = np.linalg.solve(precision[:-1, :-1], precision[:-1, -1])
-        self.own.fill(shift, i, scale, np.append(-shift[self.common], 1.0))
-        likelihood, chi2 = float(self.log_likelihood[i, k]), float(self.chi2[i, k])
-        return Marginal(likelihood, chi2, shift, self.shape[0], scale, *self.sizes[i])
+    def shift(self, size: IntArray, scale: IntArray) -> FloatArray:
+        """Return the most probable nuisances of each comparison at one size and scale, by rank, (a, p)."""
+        each, common = np.arange(len(self.log_likelihood)), self.own.groups.common
+        found = np.zeros((len(each), self.count))
+        found[:, common] = self.fit.shift((each, size, scale))
+        left = np.hstack([-found[:, common], np.ones((len(each), 1))])
+        self.own.fill(found, size, self.scales[scale], left)
+        return found
 
 
-def gaussian(
-    comparison: Comparison,
-    scales: Sequence[float],
-    keep: BoolArray | None = None,
-    *,
-    sizes: Sequence[tuple[float, float]] = ((1.0, 1.0),),
-) -> Parts:
-    """Integrate the nuisances out at every size of the doubts and every scale of the noise of the shapes.
-
-    All of them weigh the same Gram matrices, one of the shapes and one of the rest. The last pivot of the Cholesky
-    factor of a precision bordered by what the residual pulls is chi-squared (Golub and Van Loan 2013, Matrix
-    Computations, section 4.2), so that one batch of factors gives all likelihoods.
+def gaussian(comparison: Comparison, scales: Sequence[float], keep: BoolArray | None = None) -> Parts:
+    """Integrate the nuisances out of a comparison at every scale of the noise of the shapes, all doubts as they are.
 
     Parameters
     ----------
@@ -185,35 +194,31 @@ def gaussian(
         As in :func:`marginal`.
     scales : (s,) sequence of float
         Scales of the noise of the shapes [-].
-    sizes : (b,) sequence of (float, float)
-        Shares of the two doubts, see :attr:`Comparison.sizes` [-].
     """
-    rows = slice(None) if keep is None else keep
-    r, j, shapes = comparison.residual[rows], comparison.nuisance[rows], comparison.scaled[rows]
-    d = comparison.variances(sizes)[:, rows]
-    groups = separate(j, shapes)
-    data = np.column_stack([j[:, groups.common], r])
-    own, p, factor = groups.beside(d, data), len(groups.common), np.asarray(scales, dtype=float)
-    rest, scaled = ((data[part].T / d[:, None, part]) @ data[part] for part in (~shapes, shapes))
-    precision = rest[:, None] + scaled[:, None] / factor[:, None, None] ** 2 - own.share(factor)
-    # what is added to the residual's corner, more than its round-off, goes from chi-squared again
-    corner = 1.0 + 1e-12 * precision[..., -1, -1]
-    precision[..., :-1, :-1] += np.eye(p)
-    precision[..., -1, -1] += corner
-    pivots = np.diagonal(np.linalg.cholesky(precision), axis1=2, axis2=3)
-    chi2 = np.maximum(pivots[..., -1] ** 2 - corner, 0.0)
-    log_det = 2 * np.log(pivots[..., :-1]).sum(axis=-1) + 2 * shapes.sum() * np.log(factor)
-    noise = np.log(d).sum(axis=1)[:, None] + len(r) * np.log(2 * np.pi)
-    return Parts(
-        sizes=tuple(sizes),
-        scales=tuple(factor.tolist()),
-        log_likelihood=-0.5 * (chi2 + log_det + own.log_det(factor) + noise),
-        chi2=chi2,
-        precision=precision,
-        own=own,
-        common=groups.common,
-        shape=(len(r), j.shape[1]),
+    stack = Stack.of([comparison])
+    pattern = pattern_of(comparison, keep, judged=False)
+    return _integrated(stack, pattern, scales, stack.variance[:, None])
+
+
+def _integrated(stack: Stack, pattern: Pattern, scales: Sequence[float], variance: FloatArray) -> Parts:
+    """Integrate the nuisances out at every scale of the noise of the shapes, beside noises of some variance (a, b, n).
+
+    All of them weigh the same Gram matrices, one of the shapes and one of the rest, so that one batch of factors gives
+    all likelihoods.
+    """
+    rows, groups, shapes = pattern.rows, pattern.groups, pattern.scaled
+    factor = np.asarray(scales, dtype=float)
+    r, j, d = stack.residual[:, rows], stack.nuisance[:, rows], variance[..., rows]
+    data = np.concatenate([j[..., groups.common], r[..., None]], axis=-1)
+    own = groups.beside(j, d, data)
+    rest, scaled = (
+        (np.swapaxes(data[:, None, part] / d[..., part, None], -1, -2) @ data[:, None, part])
+        for part in (~shapes, shapes)
     )
+    fit = bordered(rest[:, :, None] + scaled[:, :, None] / factor[:, None, None] ** 2 - own.share(factor))
+    log_det = fit.log_det + 2 * shapes.sum() * np.log(factor) + own.log_det(factor)
+    noise = np.log(d).sum(axis=-1)[..., None] + len(rows) * np.log(2 * np.pi)
+    return Parts(-0.5 * (fit.chi2 + log_det + noise), fit, own, factor, stack.nuisance.shape[-1])
 
 
 def normal_equations(
@@ -237,11 +242,11 @@ def normal_equations(
     normal : (k, k) array
     load : (k,) array
     """
-    rows = slice(None) if keep is None else keep
+    pattern = pattern_of(comparison, keep, judged=False)
+    rows, groups = pattern.rows, pattern.groups
     j, d, columns = comparison.nuisance[rows], comparison.noise(scale)[rows], columns[rows]
-    groups = separate(j, comparison.scaled[rows])
     common = j[:, groups.common]
-    precise = groups.precise(d, np.hstack([common, columns]))
+    precise = groups.precise(j, d, np.hstack([common, columns]))
     own, free = precise[:, : common.shape[1]], precise[:, common.shape[1] :]
     inner = cho_factor(np.eye(common.shape[1]) + common.T @ own)
     solved = free - own @ cho_solve(inner, common.T @ free)

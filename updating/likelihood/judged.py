@@ -15,96 +15,68 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, FloatArray, IntArray
-from updating.likelihood.comparison import Comparison
+from acquisition.arrays import FloatArray
+from updating.likelihood.bordered import Bordered, bordered
+from updating.likelihood.stack import OwnChannel, Stack
 from updating.thresholds import DOUBT_SHARES
 
 
 @dataclass(frozen=True, eq=False)
 class SeparateChannel:
-    """A channel beside all sizes of the other doubts and all shares of its own.
+    """A channel of comparisons beside all sizes of the other doubts and all shares of its own.
 
     Parameters
     ----------
-    channel : int
-        Which of ``CHANNELS``.
-    columns : (c,) int array
-        Its nuisances.
-    count : int
-        Number of its data.
-    log_likelihood, chi2 : (b, s) arrays
-        As in :class:`updating.likelihood.gaussian.Marginal`, b sizes of the other doubts, s shares [-].
-    shift : (b, s, c) array
-        Its most probable nuisances [standard deviations].
+    own : OwnChannel
+        Its data and nuisances.
+    parts : Bordered
+        Its nuisances integrated out, (a, b, s): comparisons, sizes of the other doubts, shares.
+    log_likelihood : (a, b, s) array
+        As in :class:`updating.likelihood.gaussian.Marginal` [-].
     """
 
-    channel: int
-    columns: IntArray
-    count: int
+    own: OwnChannel
+    parts: Bordered
     log_likelihood: FloatArray
-    chi2: FloatArray
-    shift: FloatArray
 
     @property
     def summed(self) -> FloatArray:
-        """The log-likelihood summed over the shares, each as likely, (b,) [-]."""
+        """The log-likelihood summed over the shares, each as likely, (a, b) [-]."""
         return np.asarray(
-            np.logaddexp.reduce(self.log_likelihood, axis=1) - np.log(self.log_likelihood.shape[1])
+            np.logaddexp.reduce(self.log_likelihood, axis=-1) - np.log(self.log_likelihood.shape[-1])
         )
 
 
 def separate_channels(
-    comparison: Comparison, keep: BoolArray | None, sizes: Sequence[tuple[float, float]]
+    stack: Stack, channels: Sequence[OwnChannel], variance: FloatArray
 ) -> list[SeparateChannel]:
-    """Return each channel with a judged doubt and nuisances of its own.
+    """Integrate the nuisances of channels out, at all sizes of the other doubts and all shares of their own.
 
     Parameters
     ----------
-    comparison : Comparison
-        Residual, nuisances and noise.
-    keep : (n,) bool array, optional
-        Data to use; left out, all.
-    sizes : sequence of (float, float)
-        Sizes of the two other doubts, see :attr:`Comparison.sizes` [-].
+    stack : Stack
+        Residuals, nuisances and noise.
+    channels : sequence of OwnChannel
+        What is integrated by itself.
+    variance : (a, b, n) array
+        Variance at all sizes of the other doubts [-].
     """
-    if comparison.judged is None:
-        return []
-    found = []
-    doubtful = comparison.judged > 0
-    used = np.ones(len(doubtful), dtype=bool) if keep is None else keep
-    touched = comparison.nuisance != 0
-    for channel in np.unique(comparison.channel[doubtful & used]).tolist():
-        rows = used & (comparison.channel == channel)
-        columns = touched[rows].any(axis=0)
-        if not (touched[used & ~rows] & columns).any():
-            found.append(
-                _integrated(comparison, channel, np.flatnonzero(rows), np.flatnonzero(columns), sizes)
-            )
-    return found
+    return [_integrated(stack, own, variance[..., own.rows]) for own in channels]
 
 
-def _integrated(
-    comparison: Comparison,
-    channel: int,
-    rows: IntArray,
-    columns: IntArray,
-    sizes: Sequence[tuple[float, float]],
-) -> SeparateChannel:
-    """Integrate the nuisances of a channel out at all sizes and shares, as in :func:`gaussian`."""
-    assert comparison.judged is not None
-    assert comparison.judged_columns is not None
+def _integrated(stack: Stack, own: OwnChannel, variance: FloatArray) -> SeparateChannel:
+    """Integrate the nuisances of a channel out, whose data have so much variance at all sizes (a, b, n) [-]."""
+    assert stack.judged is not None
+    assert stack.first.judged_columns is not None
     shares = np.array(DOUBT_SHARES)
-    less = (1 - shares**2)[:, None] * comparison.judged[rows]
-    variance = comparison.variances(sizes)[:, None, rows] - less
-    growth = np.where(comparison.judged_columns[columns], shares[:, None], 1.0)
-    own = comparison.nuisance[np.ix_(rows, columns)] * growth[:, None, :]
-    residual = np.broadcast_to(comparison.residual[rows, None], (len(shares), len(rows), 1))
-    data = np.concatenate([own, residual], axis=2)
-    whole = np.swapaxes(data / variance[..., None], 2, 3) @ data
-    precision = whole[..., :-1, :-1] + np.eye(len(columns))
-    pull = whole[..., :-1, -1]
-    shift = np.linalg.solve(precision, pull[..., None])[..., 0]
-    chi2 = np.maximum(whole[..., -1, -1] - np.sum(pull * shift, axis=-1), 0.0)
-    log_det = np.linalg.slogdet(precision)[1] + np.log(variance).sum(axis=-1)
-    likelihood = -0.5 * (chi2 + log_det + len(rows) * np.log(2 * np.pi))
-    return SeparateChannel(channel, columns, len(rows), likelihood, chi2, shift)
+    less = (1 - shares**2)[:, None] * stack.judged[:, None, own.rows]
+    variance = variance[:, :, None] - less[:, None]
+    growth = np.where(stack.first.judged_columns[own.columns], shares[:, None], 1.0)
+    data = np.empty((len(less), len(shares), len(own.rows), len(own.columns) + 1))
+    nuisance = stack.nuisance[:, own.rows[:, None], own.columns]
+    data[..., :-1] = nuisance[:, None] * growth[:, None, :]
+    data[..., -1] = stack.residual[:, None, own.rows]
+    data = data[:, None]
+    parts = bordered(np.swapaxes(data / variance[..., None], -1, -2) @ data)
+    log_det = parts.log_det + np.log(variance).sum(axis=-1)
+    return SeparateChannel(own, parts, -0.5 * (parts.chi2 + log_det + len(own.rows) * np.log(2 * np.pi)))

@@ -48,24 +48,34 @@ class Nodes:
         """
         n_frf, n_modes = now.constants.shape
         columns = np.zeros((n_frf, n_modes, len(self._shared), n_modes))
-        if len(self._shared):
-            fixed = self._fixed
+        if self.present:
             moved, before = self._elsewhere(now), self._elsewhere(self.setting.nominal)
             errors = np.hypot(LEAST_CONSTANT_NOISE, self._stretched(now))
             besides = errors * np.sqrt(np.mean(moved**2, axis=0))
             # a shape has no sign of its own: one that leaps would be no smooth function of the state
             sign = np.where(np.sum(moved * before, axis=0) < 0, -1.0, 1.0)
             change = now.gain * moved * besides * sign * level
-            for k, place in enumerate(self._shared):
-                there = np.flatnonzero(fixed == place)
-                columns[there[:, None], np.arange(n_modes), k, np.arange(n_modes)] = change[there]
+            rows, places = self._members
+            own = np.arange(n_modes)
+            columns[rows[:, None], own, places[:, None], own] = change[rows]
         return columns.reshape(n_frf * n_modes, -1)
 
     def _stretched(self, now: Prediction) -> FloatArray:
         """Return by how much errors of the poles stretch the constants of each mode, (n_modes,) [-]."""
         setting = self.setting
-        own = level_errors(setting.measured, setting.scatter)
+        own = self._own_errors
         return own if setting.before is None else np.hypot(own, setting.before.level_errors(now))
+
+    @cached_property
+    def _own_errors(self) -> FloatArray:
+        """How far errors of the test's own poles stretch the constants of each mode, (n_modes,) [-]."""
+        return level_errors(self.setting.measured, self.setting.scatter)
+
+    @cached_property
+    def _members(self) -> tuple[IntArray, IntArray]:
+        """FRFs that share a transducer, and the rank of its point among the shared ones, (n,) each."""
+        places, rows = np.nonzero(self._shared[:, None] == self._fixed)
+        return rows, places
 
     @cached_property
     def _fixed(self) -> IntArray:

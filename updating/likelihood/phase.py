@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,19 +28,24 @@ class Phases(Quantity):
 
         Filters turn all alike in proportion to frequency, which is as a delay does; the rest is each mode's.
         """
-        test = self.setting.measured
-        assert test.phase_sigma is not None
         left, turns = self._turned(view)
-        residual = left + np.pi * turns
-        n_chains, n_modes = residual.shape
+        return replace(self._unturned, residual=(left + np.pi * turns).ravel())
+
+    @cached_property
+    def _unturned(self) -> Block:
+        """The block beside a state that turns nothing; no state changes more of it than the residual."""
+        test = self.setting.measured
+        assert test.phase is not None
+        assert test.phase_sigma is not None
+        n_chains, n_modes = test.phase.shape
         columns = np.repeat(PHASE_DOUBT * np.eye(n_modes)[None], n_chains, axis=0).reshape(-1, n_modes)
         late = PHASE_DOUBT * np.tile(test.frequency / test.frequency.max(), n_chains)
         judged = (PHASE_UNEVENNESS * PHASE_DOUBT) ** 2 + self._complexity**2
         return Block(
             "phase",
-            residual.ravel(),
+            test.phase.ravel(),
             (test.phase_sigma**2 + judged).ravel(),
-            np.zeros((residual.size, len(self.setting.names))),
+            np.zeros((test.phase.size, len(self.setting.names))),
             late[:, None],
             columns,
             np.tile(np.arange(n_modes), n_chains),
@@ -54,8 +59,10 @@ class Phases(Quantity):
         assert test.channel_group is not None
         _, turns = self._turned(view)
         # the residue of exp(-s tau) H(s) holds exp(-s tau) at the pole, whose decay makes it larger
-        grown = np.exp(2 * np.pi * test.frequency * np.nan_to_num(test.damping) * view.state.delay)
-        return np.where(turns[test.channel_group] % 2 == 0, grown, -grown)
+        signs = np.where(turns % 2 == 0, 1.0, -1.0)[test.channel_group]
+        if not view.state.delay:
+            return signs
+        return signs * np.exp(2 * np.pi * test.frequency * np.nan_to_num(test.damping) * view.state.delay)
 
     def _turned(self, view: View) -> tuple[FloatArray, FloatArray]:
         """Return the phases beyond the state's [rad], and by how many half turns these are nearest to zero.

@@ -4,14 +4,44 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
 from updating.likelihood.hit_scatter import HitScatter
+from updating.likelihood.registration import registration_doubt, with_registration
+from updating.models.state import NOMINAL, Role, State
 from updating.prediction.prediction import Prediction
-from updating.thresholds import END_REACH, REGISTRATION_SHARE
+from updating.test_data.chain import relabelled
+
+
+@dataclass(frozen=True, eq=False)
+class Marks:
+    """Where the hammer was to hit, or where the sensors were to stand.
+
+    Parameters
+    ----------
+    end : {"hit", "seen"}
+        Which of the two.
+    first : int
+        Which of the columns of :meth:`Places.columns` is the first of theirs; the others follow.
+    points : (n,) int array
+        Points of the test.
+    doubt : (n, dim) array
+        How well the place of each is known [m].
+    """
+
+    end: Literal["hit", "seen"]
+    first: int
+    points: IntArray
+    doubt: FloatArray
+
+    @property
+    def columns(self) -> IntArray:
+        """Their columns, one per point and direction, (n dim,)."""
+        return np.arange(self.first, self.first + self.doubt.size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +68,7 @@ class Places:
         measured : (n_frf, n_modes) array
             The constants that they are to be [-].
         """
-        test = self.setting.measured
-        bare = (test.hit < 0)[:, None]
+        bare = (self.setting.measured.hit < 0)[:, None]
         seen, hit = self._as_measured(now, level, measured)
         by_hit = level * now.gain * seen * now.hit_slopes
         by_sensor = level * now.gain * hit * now.seen_slopes
@@ -55,18 +84,23 @@ class Places:
         Near a node the model hardly determines how far a mode moves there, for it is the place that decides, and the
         other ends' errors go with that.
         """
-        test = self.setting.measured
+        shared, alike = self._shared
         ends = {"seen": now.seen, "hit": now.hit}
-        shared = "hit" if test.roving == "seen" else "seen"
-        point = getattr(test, shared)
-        alike = (point[:, None] == point) & (test.hit >= 0)
-        others = level * now.gain * ends[test.roving]
+        others = level * now.gain * ends[self.setting.measured.roving]
         power = alike @ others**2
         known = (np.sum(alike, axis=1) > 1)[:, None] & (power > 0)
         ends[shared] = np.where(
             known, alike @ (others * measured) / np.where(known, power, 1.0), ends[shared]
         )
         return ends["seen"], ends["hit"]
+
+    @cached_property
+    def _shared(self) -> tuple[Literal["seen", "hit"], FloatArray]:
+        """The end that does not rove, and 1 for every two FRFs that have it in common, (n_frf, n_frf) [-]."""
+        test = self.setting.measured
+        end: Literal["seen", "hit"] = "hit" if test.roving == "seen" else "seen"
+        point = getattr(test, end)
+        return end, ((point[:, None] == point) & (test.hit >= 0)).astype(float)
 
     def _together(self, along: FloatArray) -> FloatArray:
         """Return a column for where the points as a whole lie along each axis that leaves it in doubt."""
@@ -77,20 +111,10 @@ class Places:
 
     @cached_property
     def _loose(self) -> FloatArray:
-        """Doubt in where points lie along the model's axes, of beams one, of plates two [m].
-
-        It is 0 where one end is clamped and they keep their distance from the other. Else it is not stated from which
-        end they were measured: half of the doubt in the size. A baseline has the same.
-        """
-        spec, tolerances = self.setting.predictor.spec, self.setting.tolerances.factors
-        if self.setting.before is not None or not spec.outlined:
+        """Doubt in where points lie along the model's axes [m]; a baseline has the same."""
+        if self.setting.before is not None:
             return np.zeros(1)
-        sizes = {"length": spec.length} | ({"width": spec.width} if spec.kind == "plate" else {})
-        doubts = np.array(
-            [REGISTRATION_SHARE * tolerances.get(name, 0.0) * size for name, size in sizes.items()]
-        )
-        ends = [len({edge for edge in spec.clamped if edge[0] == axis}) for axis in "xy"[: len(sizes)]]
-        return np.where(np.array(ends) == 1, 0.0, doubts)
+        return registration_doubt(self.setting.predictor.spec, self.setting.tolerances.factors)
 
     @cached_property
     def _hit(self) -> list[tuple[IntArray, FloatArray]]:
@@ -128,6 +152,82 @@ class Places:
         seen = self.setting.measured.seen
         return self._doubted(seen, np.full(len(seen), self.setting.measured.position_sigma))
 
+    @cached_property
+    def marks(self) -> tuple[Marks, ...]:
+        """The places at which a prediction may be linearised; none of imported models, and none beside a baseline.
+
+        A baseline had the same marks, and imported models have rows at nodes alone.
+        """
+        test, spec = self.setting.measured, self.setting.predictor.spec
+        stated = test.bare or not np.any(test.hit < 0)
+        if not (spec.outlined and stated and len(test.seen)) or self.setting.before is not None:
+            return ()
+        seen = np.unique(test.seen)
+        if test.bare:
+            return (Marks("seen", 0, seen, self._hit[0][1]),)
+        hits = sum(doubt.size for _, doubt in self._hit)
+        return Marks("hit", 0, np.unique(test.hit), self._hit[0][1]), Marks("seen", hits, seen, self._seen[1])
+
+    @cached_property
+    def movable(self) -> IntArray:
+        """Which of the columns of :meth:`columns` are of these marks, (m,)."""
+        return np.concatenate([np.zeros(0, dtype=np.int64), *(one.columns for one in self.marks)])
+
+    def elsewhere(self, shift: FloatArray, state: State) -> tuple[State, FloatArray]:
+        """Return the state in which the marks lie elsewhere, and by how much, inside of the structure.
+
+        Parameters
+        ----------
+        shift : (m,) array
+            How far they lie from where they are stated, in the order of ``movable`` [standard deviations].
+        state : State
+            What else is supposed: where labels of points were exchanged, a mark is that of the other point.
+        """
+        test, spec = self.setting.measured, self.setting.predictor.spec
+        moved: dict[Role, tuple[float, ...]] = {}
+        taken = []
+        for marks, by in zip(self.marks, self._by_mark(shift), strict=True):
+            points = relabelled(marks.points, marks.end, state)
+            at = test.points[points]
+            size = np.array([spec.length, spec.width][: at.shape[1]])
+            there = np.clip(at + by * marks.doubt, np.minimum(at, 0.0), np.maximum(at, size))
+            away = there - at
+            taken.append((away / np.where(marks.doubt > 0, marks.doubt, 1.0)).ravel())
+            moved |= {
+                (marks.end, point): tuple(step)
+                for point, step in zip(points.tolist(), away.tolist(), strict=True)
+                if any(step)
+            }
+        return State(moved=moved) if moved else NOMINAL, np.concatenate([np.zeros(0), *taken])
+
+    def _by_mark(self, shift: FloatArray) -> list[FloatArray]:
+        parts = np.split(shift, np.cumsum([one.doubt.size for one in self.marks])[:-1]) if self.marks else []
+        return [part.reshape(one.doubt.shape) for part, one in zip(parts, self.marks, strict=True)]
+
+    def bending(self, now: Prediction, noise: FloatArray) -> FloatArray:
+        """Return how far constants leave their linearisation at one standard deviation of each mark, (m,) [noise].
+
+        A shape of wave number k leaves its tangent by half of (k dx)^2 of its size.
+
+        Parameters
+        ----------
+        now : Prediction
+            The modes.
+        noise : (n_modes,) array
+            Independent noise of the constants of each mode over their r.m.s. [-].
+        """
+        ends = {"hit": (now.hit, now.hit_slopes), "seen": (now.seen, now.seen_slopes)}
+        values, slopes = ends[self.setting.measured.roving]
+        waves = np.mean(slopes**2, axis=1) / np.maximum(np.mean(values**2, axis=0), 1e-300)
+        worst = np.max(0.5 * waves / noise, axis=1)
+        found = [np.zeros(0)]
+        for marks in self.marks:  # constants that share a mark leave it together
+            sharing = np.count_nonzero(
+                getattr(self.setting.measured, marks.end)[:, None] == marks.points, axis=0
+            )
+            found.append((np.sqrt(sharing)[:, None] * marks.doubt**2 * worst).ravel())
+        return np.concatenate(found)
+
     def _doubted(self, place: IntArray, sigma: FloatArray) -> tuple[IntArray, FloatArray]:
         """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, dim) [m].
 
@@ -139,8 +239,7 @@ class Places:
         for axis, loose in enumerate(self._loose[: doubt.shape[1]].tolist()):
             if loose:
                 at, size = test.points[points, axis], (spec.length, spec.width)[axis]
-                at_end = np.minimum(at, size - at) < END_REACH * size
-                doubt[:, axis] = np.where(at_end, np.hypot(doubt[:, axis], 2 * loose), doubt[:, axis])
+                doubt[:, axis] = with_registration(doubt[:, axis], at, size, loose)
         return rank, doubt
 
     @staticmethod

@@ -13,6 +13,7 @@ work grows with the number of data, not with the cube of the number of points.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,8 +33,6 @@ class Separate:
         Data that they change, those of a group together.
     starts : (m,) int array
         Where the rows of each group begin.
-    values : (k, q) array
-        Sensitivities there, zero where a group has fewer columns [-].
     scaled : (m,) bool array
         Which groups change data whose noise has an unknown scale.
     common : (c,) int array
@@ -43,71 +42,89 @@ class Separate:
     columns: IntArray
     rows: IntArray
     starts: IntArray
-    values: FloatArray
     scaled: BoolArray
     common: IntArray
 
-    def beside(self, variance: FloatArray, data: FloatArray) -> Beside:
-        """Return the groups beside columns of data (n, c), with noises of so much variance each (b, n) [-]."""
-        if not len(self.starts):
-            return Beside(
-                self, *(np.zeros((len(variance), 0, *end)) for end in ((0,), (0, 0), (0, data.shape[1])))
-            )
-        power, turn, rotated = self._rotated(variance)
-        return Beside(self, power, turn, self._products(rotated, data))
-
-    def precise(self, variance: FloatArray, data: FloatArray) -> FloatArray:
-        """Return ``(D + L L^T)^-1`` times columns (n, c): noise (n,) and groups integrated out [-]."""
-        found = data / variance[:, None]
-        if not len(self.starts):
-            return found
-        power, _, rotated = self._rotated(variance[None])
-        shares = (self._products(rotated, data) / (1.0 + power)[..., None])[0]
-        found[self.rows] -= np.einsum("kq,kqc->kc", rotated[0], np.repeat(shares, self._lengths, axis=0))
-        return found
-
-    @property
-    def _lengths(self) -> IntArray:
-        return np.diff(np.append(self.starts, len(self.rows)))
-
-    def _rotated(self, variance: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Turn the nuisances of each group into each other until they are orthogonal beside each noise.
+    def values(self, nuisance: FloatArray) -> FloatArray:
+        """Return the sensitivities of each group on its rows, of all (..., n, p), zero where it has fewer than q.
 
         Returns
         -------
-        power : (b, m, q) array
+        (..., k, q) array [-]
+        """
+        own = np.repeat(self.columns, self._lengths, axis=0)
+        return np.where(own < 0, 0.0, nuisance[..., self.rows[:, None], own])
+
+    def beside(self, nuisance: FloatArray, variance: FloatArray, data: FloatArray) -> Beside:
+        """Return the groups beside columns of data, with several noises each.
+
+        Parameters
+        ----------
+        nuisance : (a, n, p) array
+            Sensitivities of each comparison [-].
+        variance : (a, b, n) array
+            Its noises [-].
+        data : (a, n, c) array
+            Its columns [-].
+        """
+        if not len(self.starts):
+            count, ends = variance.shape[:2], ((0,), (0, 0), (0, data.shape[-1]))
+            return Beside(self, *(np.zeros((*count, 0, *end)) for end in ends))
+        power, turn, rotated = self._rotated(self.values(nuisance), variance)
+        return Beside(self, power, turn, self._products(rotated, data))
+
+    def precise(self, nuisance: FloatArray, variance: FloatArray, data: FloatArray) -> FloatArray:
+        """Return ``(D + L L^T)^-1`` times columns (n, c): noise (n,) and groups of (n, p) integrated out [-]."""
+        found = data / variance[:, None]
+        if not len(self.starts):
+            return found
+        power, _, rotated = self._rotated(self.values(nuisance)[None], variance[None, None])
+        shares = (self._products(rotated, data[None]) / (1.0 + power)[..., None])[0, 0]
+        found[self.rows] -= np.einsum("kq,kqc->kc", rotated[0, 0], np.repeat(shares, self._lengths, axis=0))
+        return found
+
+    @cached_property
+    def _lengths(self) -> IntArray:
+        return np.diff(np.append(self.starts, len(self.rows)))
+
+    def _rotated(self, values: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Turn the nuisances of each group (a, k, q) into each other until they are orthogonal beside each noise.
+
+        Returns
+        -------
+        power : (a, b, m, q) array
             Their squares beside the noise, the eigenvalues of ``L^T D^-1 L`` [-].
-        turn : (b, m, q, q) array
+        turn : (a, b, m, q, q) array
             The eigenvectors, in columns.
-        rotated : (b, k, q) array
+        rotated : (a, b, k, q) array
             ``D^-1 L`` turned.
         """
-        over = self.values / variance[:, self.rows, None]
-        power, turn = np.linalg.eigh(self._summed(over[..., None] * self.values[:, None, :]))
-        rotated = np.einsum("bkq,bkqr->bkr", over, np.repeat(turn, self._lengths, axis=1))
+        over = values[:, None] / variance[:, :, self.rows, None]
+        power, turn = np.linalg.eigh(self._summed(over[..., None] * values[:, None, :, None, :]))
+        rotated = (over[..., None, :] @ np.repeat(turn, self._lengths, axis=2))[..., 0, :]
         return np.maximum(power, 0.0), turn, rotated
 
     def _products(self, rotated: FloatArray, data: FloatArray) -> FloatArray:
-        return self._summed(rotated[..., None] * data[self.rows][:, None, :])
+        return self._summed(rotated[..., None] * data[:, None, self.rows, None, :])
 
     def _summed(self, terms: FloatArray) -> FloatArray:
-        """Add up what belongs to the rows of each group, (b, k, ...)."""
-        return np.add.reduceat(terms, self.starts, axis=1)
+        """Add up what belongs to the rows of each group, (a, b, k, ...)."""
+        return np.add.reduceat(terms, self.starts, axis=2)
 
 
 @dataclass(frozen=True, eq=False)
 class Beside:
-    """Groups of nuisances beside columns of data and b noises, those of the shapes to be scaled.
+    """Groups of nuisances beside columns of data of comparisons, each with b noises, those of the shapes to be scaled.
 
     Parameters
     ----------
     groups : Separate
         Which they are.
-    power : (b, m, q) array
+    power : (a, b, m, q) array
         Squares of the turned nuisances beside the noise [-].
-    turn : (b, m, q, q) array
+    turn : (a, b, m, q, q) array
         How they were turned.
-    products : (b, m, q, c) array
+    products : (a, b, m, q, c) array
         What they have in common with the columns [-].
     """
 
@@ -121,27 +138,38 @@ class Beside:
         return np.where(self.groups.scaled, scales[:, None] ** -2, 1.0)[..., None]
 
     def share(self, scales: FloatArray) -> FloatArray:
-        """Return what the groups explain of the Gram matrix of the columns at scales (s,), (b, s, c, c) [-]."""
-        count, (noises, groups, size) = self.products.shape[-1], self.power.shape
+        """Return what the groups explain of the Gram matrix of the columns at scales (s,), (a, b, s, c, c) [-]."""
+        (*lead, groups, size), count = self.power.shape, self.products.shape[-1]
         if not groups:
-            return np.zeros((noises, len(scales), count, count))
+            return np.zeros((*lead, len(scales), count, count))
         reduced = self._reduced(scales)
-        weights = (reduced**2 / (1.0 + reduced * self.power[:, None])).reshape(noises, len(scales), 1, -1)
-        flat = self.products.reshape(noises, 1, groups * size, count)
-        return np.asarray((np.swapaxes(flat, 2, 3) * weights) @ flat)
+        weights = (reduced**2 / (1.0 + reduced * self.power[:, :, None])).reshape(*lead, len(scales), 1, -1)
+        flat = self.products.reshape(*lead, 1, groups * size, count)
+        return np.asarray((np.swapaxes(flat, -1, -2) * weights) @ flat)
 
     def log_det(self, scales: FloatArray) -> FloatArray:
-        """Return the logarithm of the determinant of what they add to the noise at scales (s,), (b, s) [-]."""
-        return np.asarray(np.log1p(self._reduced(scales) * self.power[:, None]).sum(axis=(2, 3)))
+        """Return the logarithm of the determinant of what they add to the noise at scales (s,), (a, b, s) [-]."""
+        return np.asarray(np.log1p(self._reduced(scales) * self.power[:, :, None]).sum(axis=(-2, -1)))
 
-    def fill(self, shift: FloatArray, noise: int, scale: float, left: FloatArray) -> None:
-        """Put the most probable values beside one noise into ``shift`` (p,), the columns adding up by ``left`` (c,)."""
-        if not self.power.shape[1]:
+    def fill(self, shift: FloatArray, noise: IntArray, scale: FloatArray, left: FloatArray) -> None:
+        """Put the most probable values of each comparison into ``shift`` (a, p).
+
+        Parameters
+        ----------
+        shift : (a, p) array
+            Nuisances of each comparison [standard deviations].
+        noise, scale : (a,) arrays
+            Which of its noises, and by how much it is scaled [-].
+        left : (a, c) array
+            By what its columns add up [-].
+        """
+        if not self.power.shape[2]:
             return
-        reduced, columns = self._reduced(np.array([scale]))[0], self.groups.columns
-        turned = reduced * (self.products[noise] @ left) / (1.0 + reduced * self.power[noise])
-        values = np.einsum("mqr,mr->mq", self.turn[noise], turned)
-        shift[columns[columns >= 0]] = values[columns >= 0]
+        each, reduced, columns = np.arange(len(shift)), self._reduced(scale), self.groups.columns
+        pulled = (self.products[each, noise] @ left[:, None, :, None])[..., 0]
+        turned = reduced * pulled / (1.0 + reduced * self.power[each, noise])
+        values = (self.turn[each, noise] @ turned[..., None])[..., 0]
+        shift[:, columns[columns >= 0]] = values[:, columns >= 0]
 
 
 def separate(nuisance: FloatArray, scaled: BoolArray) -> Separate:
@@ -150,7 +178,7 @@ def separate(nuisance: FloatArray, scaled: BoolArray) -> Separate:
     Parameters
     ----------
     nuisance : (n, p) array
-        Sensitivities [-].
+        Sensitivities, or whether there is one [-].
     scaled : (n,) bool array
         Which data have noise of an unknown scale; a group has such data or others, not both.
     """
@@ -158,9 +186,8 @@ def separate(nuisance: FloatArray, scaled: BoolArray) -> Separate:
     count = touched.sum(axis=0) if nuisance.shape[1] > FEW_NUISANCES else np.zeros(0, dtype=np.int64)
     if not count.any():
         none = np.zeros(0, dtype=np.int64)
-        empty = np.zeros((0, 0))
         every = np.flatnonzero(touched.any(axis=0))
-        return Separate(none.reshape(0, 0), none, none, empty, none.astype(bool), every)
+        return Separate(none.reshape(0, 0), none, none, none.astype(bool), every)
     fewest_first = np.argsort(count, kind="stable")
     order = fewest_first[count[fewest_first] > 0]
     owner, owned = _owners(touched[:, order], scaled)
@@ -175,10 +202,8 @@ def separate(nuisance: FloatArray, scaled: BoolArray) -> Separate:
     place = np.arange(len(rank)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
     columns[rank[by_group], place] = order[taken][by_group]
     rows, index = _rows(owner, owners[wanted])
-    own = columns[index]
-    values = np.where(own < 0, 0.0, nuisance[rows[:, None], own])
     starts = np.searchsorted(index, np.arange(len(sizes)))
-    return Separate(columns, rows, starts, values, owners[wanted] % 2 == 1, np.sort(order[~taken]))
+    return Separate(columns, rows, starts, owners[wanted] % 2 == 1, np.sort(order[~taken]))
 
 
 def _owners(touched: BoolArray, scaled: BoolArray) -> tuple[IntArray, IntArray]:

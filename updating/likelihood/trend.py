@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -26,12 +27,21 @@ class Trends(Quantity):
         What no test is free of is common to all modes, as is what they did together beside a line, and that a drift
         need not follow one.
         """
-        test, rate = self.setting.measured, view.state.drift
+        return (
+            self._beside(view.state.drift, view.doubt.fidelity) if view.state.drift else self._beside_no_drift
+        )
+
+    @cached_property
+    def _beside_no_drift(self) -> Block:
+        return self._beside(0.0, 0.0)
+
+    def _beside(self, rate: float, fidelity: float) -> Block:
+        test = self.setting.measured
         assert test.trend is not None
         assert test.trend_sigma is not None
         n = len(test.trend)
         known = np.isfinite(test.trend)
-        uneven = np.where(known, view.doubt.fidelity * rate, 0.0)
+        uneven = np.where(known, fidelity * rate, 0.0)
         always = np.hypot(UNREMARKABLE_TREND, TREND_SHARE * test.repeatability)
         common = np.linalg.norm([always, test.common_trend_sigma, BENT_COURSE * rate])
         return Block(
@@ -42,5 +52,5 @@ class Trends(Quantity):
             np.zeros((n, 0)),
             np.where(known, common, 0.0)[:, None],
             np.arange(n),
-            idealised=uneven**2 if view.doubt.fidelity else None,
+            idealised=uneven**2 if fidelity else None,
         )

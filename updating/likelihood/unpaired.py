@@ -164,8 +164,8 @@ class UnpairedModes(Quantity):
         others = np.flatnonzero(np.arange(len(f)) != k)
         near = others[np.argsort(np.abs(np.log(f[others] / f[k])))[: UNPAIRED_NEIGHBOURS - 1]]
         angle = turn(f[near], f[[k]], np.asarray(test.repeatability))
-        mode = whole.select(np.full(len(near), k))
-        change = taken_up(mode, whole.seen[:, near], whole.hit[:, near], test.hit < 0)
+        own = whole.gain[:, [k]], whole.seen[:, [k]], whole.hit[:, [k]]
+        change = taken_up(*own, whole.seen[:, near], whole.hit[:, near], test.hit < 0)
         return np.asarray(np.where(angle > LEAST_TURN, angle, 0.0) * change)
 
     def _any(self, i: int) -> _Rows:

@@ -101,7 +101,7 @@ class Between:
         """Return the log-likelihood at severities with the doubt in the idealisation as it stands, (m,) [-]."""
         first = self._ordered[0]
         shapes = first.scaled
-        scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
+        scales = SHAPE_NOISE_SCALES if shapes.any() else (1.0,)
         prior = np.log(first.scale_prior if len(scales) > 1 else (1.0,))
         data, variance = self._data(severity), self.variance(severity)
         gram_matrices = [_gram_matrices(data[:, rows], variance[:, rows]) for rows in (~shapes, shapes)]

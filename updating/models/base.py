@@ -55,6 +55,14 @@ def region_scales(term: Term, state: State, regions: int) -> FloatArray:
     return scale
 
 
+def relative_scales(term: Term, state: State, regions: int) -> FloatArray:
+    """Return what a state's factors of regions alone make of a term there, and outside all of them, (regions + 1,)."""
+    scale = np.ones(regions + 1)
+    for (region, factor), value in state.regional.items():
+        scale[region] *= value ** term.powers.get(factor, 0.0)
+    return scale
+
+
 def supports_at(structure: Structure, state: State) -> tuple[Yielding, ...]:
     """Return the supports of a state that give way, as stiff and heavy as its factors make what pulls at them."""
     if not state.yielding:
@@ -132,6 +140,12 @@ class Structure(ABC):
         directions : (n_points, 3) array, optional
             Unit vectors along which the displacement is meant; left out, the model's z.
         """
+
+    def rows_on(
+        self, points: FloatArray, directions: FloatArray | None, basis: FloatArray
+    ) -> dict[str, FloatArray]:
+        """Return the same on a basis (n_dofs, r), each (n_points, r)."""
+        return {name: np.asarray(rows @ basis) for name, rows in self.rows(points, directions).items()}
 
     @abstractmethod
     def unit_mass(self, points: FloatArray) -> Sparse:

@@ -50,8 +50,7 @@ def complex_modes(matrices: Matrices, *, rigid: int = 0) -> ComplexModes:
         All elastic modes of the reduced model that oscillate.
     """
     values, vectors = matrices.undamped
-    viscous = vectors.T @ matrices.viscous @ vectors
-    structural = vectors.T @ matrices.structural @ vectors
+    viscous, structural = matrices.in_modes
     n = len(values)
     # a rigid body has no stiffness; rounding must not give it one of its own
     spring = np.diag(np.where(np.arange(n) < rigid, 0.0, values)).astype(complex) + 1j * structural

@@ -67,6 +67,12 @@ class Matrices:
             values[: self.rigid][rounding] = 0.0
         return values, vectors
 
+    @cached_property
+    def in_modes(self) -> tuple[FloatArray, FloatArray]:
+        """C and D in the undamped modes, (r, r) each [1/s], [1/s^2]."""
+        vectors = self.undamped[1]
+        return vectors.T @ self.viscous @ vectors, vectors.T @ self.structural @ vectors
+
 
 def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, FloatArray]:
     """Return alpha, beta and loss factor of every region and of what lies in none.
@@ -259,6 +265,8 @@ def layer_slowing(state: State, values: FloatArray, vectors: FloatArray) -> Floa
     -------
     (n_modes,) array [-]
     """
+    if not state.losses:
+        return np.ones(len(values))
     omega = np.sqrt(np.maximum(values, 1e-12))
     return np.asarray(1 / np.sqrt(1.0 + modal_losses(state, values, vectors) / omega))
 
@@ -295,7 +303,8 @@ def coupled(
     gap = values[:, None] - values[chosen]
     near = np.abs(values[chosen]) * squares
     far = np.maximum(gap**2 + near, 1e-300)
-    return np.asarray(np.exp(0.5 * np.sum(squares * gap / far, axis=0)))
+    shift = 0.5 * np.sum(squares * gap / far, axis=0)
+    return np.asarray(np.exp(np.clip(shift, -50.0, 50.0)))  # beyond any frequency: finite, and fits nothing
 
 
 def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:

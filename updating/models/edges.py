@@ -131,11 +131,6 @@ def static_lifts(structure: FieldStructure, released: str) -> FloatArray:
     return found
 
 
-def parts_of_clamps(structure: FieldStructure) -> tuple[str, ...]:
-    """Return what may let go along a part of the clamped edges of a plate; nothing of beams."""
-    return tuple(name for name, dofs in structure.along.items() if len(dofs))
-
-
 def _field(spec: Spec, fields: Fields, kind: str, edge: str) -> tuple[Component, str, str]:
     """Return which field moves, the name of its value across an edge, and that of its slope along the edge."""
     normal, tangent = ("x", "y") if edge[0] == "x" else ("y", "x")

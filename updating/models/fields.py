@@ -72,8 +72,21 @@ class Component:
         """
         if "w" not in self.names:
             return self._elsewhere(points, n_dofs)
-        dim = len(self._grid[0])
-        return self.hermite(points, n_dofs, {"w": (), "wx": (0,)} | ({"wy": (1,)} if dim == 2 else {}))
+        return self.hermite(points, n_dofs, self._slopes)
+
+    def on(self, points: FloatArray, basis: FloatArray) -> dict[str, FloatArray]:
+        """Return the same on a basis (n_dofs, r), each (n_points, r)."""
+        if "w" not in self.names or not len(points):
+            return {name: np.asarray(rows @ basis) for name, rows in self.at(points, len(basis)).items()}
+        place, values = self._around(points, self._slopes)
+        stacked = np.concatenate(list(values.values()))
+        rows = _compressed(stacked, np.tile(place, (len(values), 1)), len(basis)) @ basis
+        return dict(zip(values, rows.reshape(len(values), len(points), -1), strict=True))
+
+    @property
+    def _slopes(self) -> dict[str, tuple[int, ...]]:
+        """The displacement and its derivatives along the axes of the model."""
+        return {"w": (), "wx": (0,)} | ({"wy": (1,)} if len(self._grid[0]) == 2 else {})
 
     def hermite(
         self, points: FloatArray, n_dofs: int, names: Mapping[str, tuple[int, ...]]
@@ -83,11 +96,18 @@ class Component:
         ``names`` are the directions differentiated along, as in :attr:`names`; exact on elements however narrow, where
         the element library inverts an ill-conditioned matrix.
         """
-        dim = len(self._grid[0])
         if len(points) == 0:
             return {name: Sparse((0, n_dofs)) for name in names}
+        place, values = self._around(points, names)
+        return {name: _compressed(one, place, n_dofs) for name, one in values.items()}
+
+    def _around(
+        self, points: FloatArray, names: Mapping[str, tuple[int, ...]]
+    ) -> tuple[IntArray, dict[str, FloatArray]]:
+        """Return the degrees of freedom about each point, (n_points, k), and what each is to derivatives there."""
         edges, numbers = self._grid
-        axes = [_hermite(edge, points[:, i]) for i, edge in enumerate(edges)]
+        dim, order = len(edges), max(len(along) for along in names.values())
+        axes = [_hermite(edge, points[:, i], order) for i, edge in enumerate(edges)]
         cells = tuple(cell for cell, _ in axes)
         ends = np.stack(np.meshgrid(*[(0, 1)] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
         columns = np.stack(
@@ -98,11 +118,8 @@ class Component:
             parts = [shape[along.count(axis)] for axis, (_, shape) in enumerate(axes)]
             # nodal order: w, wx, wy, wxy, that is (value, slope along x) for each of (value, slope along y)
             values = parts[0] if dim == 1 else np.einsum("pai,pbj->pabji", *parts)
-            data = values.reshape(len(points), -1)
-            start = np.arange(len(points) + 1) * data.shape[1]
-            place = columns.reshape(len(points), -1).ravel() + self.offset
-            found[name] = Sparse((data.ravel(), place, start), shape=(len(points), n_dofs))
-        return found
+            found[name] = values.reshape(len(points), -1)
+        return columns.reshape(len(points), -1) + self.offset, found
 
     @cached_property
     def _finder(self) -> Any:
@@ -192,6 +209,10 @@ class Fields:
     def at(self, points: FloatArray) -> dict[str, Sparse]:
         """Return the fields of the displacement at any points (n_points, dim) [m]."""
         return self.components[0].at(np.asarray(points, dtype=float).reshape(-1, self.dim), self.n_dofs)
+
+    def on(self, points: FloatArray, basis: FloatArray) -> dict[str, FloatArray]:
+        """Return the same on a basis (n_dofs, r), each (n_points, r)."""
+        return self.components[0].on(np.asarray(points, dtype=float).reshape(-1, self.dim), basis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,13 +324,28 @@ ON_A_NODE = 1e-9
 """So near to the end of an element, relative to its length, a place is on it, and independent of the next one [-]."""
 
 
-def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArray, FloatArray, FloatArray]]:
-    """Return the element each place lies in, and Hermite's cubics, their slopes and curvatures there.
+def _compressed(values: FloatArray, place: IntArray, n_dofs: int) -> Sparse:
+    """Return a matrix (n, n_dofs) that has values (n, k) in some columns of each row."""
+    start = np.arange(len(values) + 1) * values.shape[1]
+    return Sparse((values.ravel(), place.ravel(), start), shape=(len(values), n_dofs))
+
+
+def _hermite(edges: FloatArray, x: FloatArray, order: int) -> tuple[IntArray, list[FloatArray]]:
+    """Return the element each place lies in, and Hermite's cubics and their derivatives there.
+
+    Parameters
+    ----------
+    edges : (n_elements + 1,) array
+        Where elements end [m].
+    x : (n,) array
+        Places [m].
+    order : int
+        Of the highest derivative that is asked for, at most 2.
 
     Returns
     -------
     cell : (n,) int array
-    shapes : three (n, 2, 2) arrays
+    shapes : list of order + 1 (n, 2, 2) arrays
         Value and derivatives of the cubics of each end's displacement [-] and slope [m]; places outside count as the
         end.
     """
@@ -318,11 +354,9 @@ def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArr
     h = edges[cell + 1] - edges[cell]
     t = (x - edges[cell]) / h
     t = np.where(np.abs(t - np.round(t)) < ON_A_NODE, np.round(t), t)
-    value = np.stack(
-        [(1 + 2 * t) * (1 - t) ** 2, h * t * (1 - t) ** 2, t**2 * (3 - 2 * t), h * t**2 * (t - 1)], axis=1
-    )
-    slope = np.stack(
-        [6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)], axis=1
-    )
-    curve = np.stack([(12 * t - 6) / h**2, (6 * t - 4) / h, (6 - 12 * t) / h**2, (6 * t - 2) / h], axis=1)
-    return cell, (value.reshape(-1, 2, 2), slope.reshape(-1, 2, 2), curve.reshape(-1, 2, 2))
+    shapes = [[(1 + 2 * t) * (1 - t) ** 2, h * t * (1 - t) ** 2, t**2 * (3 - 2 * t), h * t**2 * (t - 1)]]
+    if order > 0:
+        shapes.append([6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)])
+    if order > 1:
+        shapes.append([(12 * t - 6) / h**2, (6 * t - 4) / h, (6 - 12 * t) / h**2, (6 * t - 2) / h])
+    return cell, [np.stack(one, axis=1).reshape(-1, 2, 2) for one in shapes]

@@ -11,20 +11,19 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, combinations
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy import linalg as dense
-from scipy import sparse
 
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.errors import StudyError
 from updating.models.absorbers import bordered
-from updating.models.base import FACTORS, Structure, Term, added, region_scales, scale_of, supports_at
-from updating.models.columns import columns_along, cut_off, extend_basis
+from updating.models.base import Structure, Term, added, region_scales, relative_scales, scale_of, supports_at
+from updating.models.columns import cut_off
 from updating.models.fields import Fields, Sparse
+from updating.models.solve import solve_pencil
+from updating.models.stacked import StackedTerms
 from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.models.terms import product
@@ -32,18 +31,9 @@ from updating.models.terms import product
 ROTATION, TRANSLATION = frozenset({"rotation"}), frozenset({"translation"})
 """What a clamp may release."""
 
-STATIC = float(np.finfo(float).eps) / 1e-6
-"""Modes with a first eigenvalue over their own below this are static beside the first [-]: kept, they would round it by
-more than 1e-6. Twice as much: modes of beams with fine meshes are left out, which round next to nothing."""
-
-SMALL = 90
-"""Up to so many unknowns a model is its own reduced basis."""
 
 PLACES = 8
 """Rows of so many sets of points are kept."""
-
-FAR_MODES = 12
-"""Elastic modes of a structure that is far from the nominal one, released or stretched, which join the basis."""
 
 
 def _all(_: Term) -> float:
@@ -194,14 +184,13 @@ class Reduced:
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and mass of a state on the columns its releases admit, absorbers behind them [SI]."""
         n = self.ranks[state.released]
-        total = {"stiffness": np.zeros((n, n)), "mass": self.point_masses[:n, :n].copy()}
-        for term, parts in self.terms(state):
-            scale = term.scale(state.factors)
-            total[term.kind] += parts[:n, :n] if scale == 1.0 else parts[:n, :n] * scale
-        for kind, matrices in added(self.structure, state).items():
-            for matrix in matrices:
-                total[kind] += matrix[:n, :n]
-        stiffness, mass = total["stiffness"], total["mass"]
+        stiffness, mass = np.zeros((n, n)), self.point_masses[:n, :n].copy()
+        self.stacked(state).add_to(stiffness, mass, state.factors)
+        more = added(self.structure, state)
+        for matrix in more["stiffness"]:
+            stiffness += matrix[:n, :n]
+        for matrix in more["mass"]:
+            mass += matrix[:n, :n]
         if state.released == TRANSLATION:
             stiffness, mass = self._without_slopes(stiffness, mass)
         if (idle := self._idle(state.released)) is not None:
@@ -254,14 +243,25 @@ class Reduced:
         )
         return terms + [(change, change.matrix) for change in self.changes]
 
+    def stacked(self, state: State) -> StackedTerms:
+        """Return the same on the columns that a state's releases admit; kept where it changes no region."""
+        n = self.ranks[state.released]
+        if state.regional:
+            return StackedTerms.of(self.terms(state), n)
+        if n not in self._stacks:
+            self._stacks[n] = StackedTerms.of(self.terms(state), n)
+        return self._stacks[n]
+
+    @cached_property
+    def _stacks(self) -> dict[int, StackedTerms]:
+        return {}
+
     def _totals(self, state: State) -> list[FloatArray]:
         if not state.regional:
             return list(self.sums)
         totals = []
         for term, parts, whole in zip(self.structure.terms, self.parts, self.sums, strict=True):
-            scale = np.ones(len(parts))
-            for (region, factor), value in state.regional.items():
-                scale[region] *= value ** term.powers.get(factor, 0.0)
+            scale = relative_scales(term, state, len(parts) - 1)
             totals.append(whole if np.all(scale == 1.0) else np.tensordot(scale, parts, axes=1))
         return totals
 
@@ -318,8 +318,7 @@ class Reduced:
         if key not in self._rows:
             while len(self._rows) >= PLACES:
                 self._rows.pop(next(iter(self._rows)))
-            rows = self.structure.rows(points, directions)
-            self._rows[key] = {n: np.asarray(m @ self.basis) for n, m in rows.items()}
+            self._rows[key] = self.structure.rows_on(points, directions, self.basis)
         return dict(self._rows[key])
 
     @cached_property
@@ -337,101 +336,11 @@ class Reduced:
         Eigenvalues are not numbers where the state has lost its mass.
         """
         stiffness, mass = self.matrices(state)
+        idle = self._idle(state.released)
+        if idle is None:
+            return solve_pencil(stiffness, mass)
         used = np.ones(len(mass), dtype=bool)
-        if (idle := self._idle(state.released)) is not None:
-            used[: len(idle)] = ~idle
-        vectors = np.eye(len(mass))[:, used]
-        try:
-            values, vectors[used] = dense.eigh(stiffness[np.ix_(used, used)], mass[np.ix_(used, used)])
-        except dense.LinAlgError:  # a mass that is not positive
-            return np.full(used.sum(), np.nan), vectors
+        used[: len(idle)] = ~idle
+        vectors = np.zeros((len(mass), int(used.sum())))
+        values, vectors[used] = solve_pencil(stiffness[np.ix_(used, used)], mass[np.ix_(used, used)])
         return values, vectors
-
-
-def reduce_structure(
-    structure: Structure, points: FloatArray, directions: FloatArray | None = None, *, modes: int = 30
-) -> Reduced:
-    """Build the reduced basis of a structure.
-
-    Parameters
-    ----------
-    structure : Structure
-        The full model.
-    points : (n_points, dim) array
-        Test points, whose static answers join the basis [m].
-    directions : (n_points, 3) array, optional
-        Directions in which they move; left out, the model's z.
-    modes : int
-        Number of nominal modes kept beside the rigid-body modes.
-
-    Returns
-    -------
-    Reduced
-    """
-    mass, stiffness, unknowns = structure.matrix("mass"), structure.matrix("stiffness"), structure.unknowns
-    count = unknowns if unknowns <= SMALL else min(modes + structure.rigid_modes, unknowns)
-    values, vectors = structure.eigen(count)
-    low = values <= values[min(structure.rigid_modes, count - 1)] / STATIC
-    values, basis = values[low], vectors[:, low]
-    if len(values) < unknowns:
-        loads = structure.rows(points, directions)["w"].toarray().T
-        basis = extend_basis(basis, _static_answers(structure, mass, values, basis, loads), mass)
-        for state in structure.stretched:
-            stiff, heavy = structure.matrices(state)
-            count = structure.rigid_modes + min(FAR_MODES, modes)
-            shapes = structure.eigen(count, stiffness=stiff, mass=heavy)[1]
-            basis = extend_basis(basis, shapes, mass)
-    ranks = {frozenset[str](): basis.shape[1]}
-    if structure.fixed:
-        for released in (ROTATION, TRANSLATION, ROTATION | TRANSLATION):
-            basis = extend_basis(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
-            ranks[released] = basis.shape[1]
-        ranks[TRANSLATION] = basis.shape[1]
-    return _with_parts(structure, Reduced(structure, basis, ranks), mass)
-
-
-def _with_parts(structure: Structure, reduced: Reduced, mass: Sparse) -> Reduced:
-    """Return a plate's model with columns behind the others for parts of its clamped edges that let go."""
-    if not isinstance(structure, FieldStructure) or not structure.along:
-        return reduced
-    clamped, behind = reduced.basis[:, : reduced.ranks[frozenset()]], reduced.basis.shape[1]
-    columns, lifts = columns_along(structure, clamped, mass, behind)
-    basis = np.hstack([reduced.basis, columns])
-    kinds = [*structure.fixed, *lifts]
-    sets = chain.from_iterable(combinations(kinds, n) for n in range(1, len(kinds) + 1))
-    ranks = {frozenset(s): basis.shape[1] for s in sets} | dict(reduced.ranks)
-    return Reduced(structure, basis, ranks, lifts=MappingProxyType(lifts))
-
-
-def _static_answers(
-    structure: Structure, mass: Sparse, values: FloatArray, vectors: FloatArray, loads: FloatArray
-) -> FloatArray:
-    """Solve for the static answers to softening each region in the low modes and to loads (n_dofs, n)."""
-    shift = 1e-3 * float(values[structure.rigid_modes]) if structure.rigid_modes else 0.0
-    answer = structure.static_answers(loads, values, vectors, shift)
-    lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
-    answer, lengths = answer[:, lengths > 0], lengths[lengths > 0]  # a force on a clamped edge moves nothing
-    left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
-    return np.asarray(left[:, (size > 1e-8 * size.max(initial=0.0)).nonzero()[0]])
-
-
-def _remove(answer: FloatArray, vectors: FloatArray, mass: Sparse) -> FloatArray:
-    return np.asarray(answer - vectors @ (vectors.T @ (mass @ answer)))
-
-
-def _released_shapes(
-    structure: Structure, stiffness: Sparse, mass: Sparse, released: frozenset[str], modes: int
-) -> FloatArray:
-    """Return modes of the structure on springs of middling and low stiffness where its clamps were."""
-    freed = np.concatenate([structure.fixed[kind] for kind in sorted(released)])
-    count = min(FAR_MODES, modes)
-    shapes = []
-    for ratio in (1e-1, 1e-4):
-        spring = np.zeros(structure.n_dofs)
-        spring[freed] = ratio * np.abs(stiffness.diagonal()[freed])
-        held = Sparse(stiffness + sparse.diags_array(spring))
-        shapes.append(structure.eigen(count, stiffness=held, released=released)[1])
-    return np.hstack(shapes)
-
-
-__all__ = ["FACTORS", "Reduced", "extend_basis", "reduce_structure"]

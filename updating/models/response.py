@@ -31,8 +31,7 @@ def answers(matrices: Matrices, loads: FloatArray, laplace: ComplexArray) -> Com
         Where in the Laplace plane, i omega + sigma where a window's decay is in the data [1/s].
     """
     values, vectors = matrices.undamped
-    viscous = vectors.T @ matrices.viscous @ vectors
-    structural = vectors.T @ matrices.structural @ vectors
+    viscous, structural = matrices.in_modes
     forces = vectors.T @ loads
     if _diagonal(viscous) and _diagonal(structural):
         s = laplace[:, None]

@@ -1,9 +1,10 @@
-"""The lowest modes of a pair of sparse matrices."""
+"""The modes of a pair of matrices: the lowest of sparse ones, all of small dense ones."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import eigh
+from scipy.linalg.lapack import dsygvd
 from scipy.sparse import linalg
 
 from acquisition.arrays import FloatArray
@@ -39,3 +40,22 @@ def lowest(k: Sparse, m: Sparse, count: int) -> tuple[FloatArray, FloatArray]:
     values, vectors = linalg.eigsh(k.tocsc(), count, m.tocsc(), sigma=shift, which="LM", v0=start)
     order = np.argsort(values)
     return values[order], vectors[:, order]
+
+
+def solve_pencil(k: FloatArray, m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Solve a small dense pair for all modes, by LAPACK without the checks of a general interface.
+
+    Parameters
+    ----------
+    k, m : (n, n) arrays
+        Stiffness and mass [SI].
+
+    Returns
+    -------
+    values : (n,) array
+        Eigenvalues in rising order, nan where the mass is not positive definite [rad^2/s^2].
+    vectors : (n, n) array
+        Mass-normalised eigenvectors, unit vectors where the mass is not positive definite [kg^-1/2].
+    """
+    values, vectors, failed = dsygvd(k, m, uplo="L")
+    return (np.full(len(k), np.nan), np.eye(len(k))) if failed else (values, vectors)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import reduce
+from itertools import zip_longest
 from types import MappingProxyType
 from typing import TypeVar
 
@@ -49,7 +50,8 @@ class State(Displayed):
     Parameters
     ----------
     factors : mapping of str to float
-        Factors on E, density, thickness, width and length of the whole structure [-].
+        Factors on E, density, thickness, width and length of the whole structure, and on what its terms name
+        besides: the stiffness across of an orthotropic plate [-].
     regional : mapping of (region index, factor name) to float
         Factors on one region [-].
     dampers : mapping of (region index, coefficient) to float
@@ -138,7 +140,7 @@ class State(Displayed):
             delay=self.delay + other.delay,
             point_gains=MappingProxyType(_multiplied(self.point_gains, other.point_gains)),
             exchanged=self.exchanged + other.exchanged,
-            moved=MappingProxyType({**self.moved, **other.moved}),
+            moved=MappingProxyType(_added(self.moved, other.moved)),
             slope=self.slope + other.slope,
             per_newton=self.per_newton + other.per_newton,
             fluid=MappingProxyType({**self.fluid, **other.fluid}),
@@ -153,6 +155,16 @@ def _multiplied(first: Mapping[Key, float], second: Mapping[Key, float]) -> dict
     for key, value in second.items():
         product[key] = product.get(key, 1.0) * value
     return product
+
+
+def _added(
+    first: Mapping[Key, tuple[float, ...]], second: Mapping[Key, tuple[float, ...]]
+) -> dict[Key, tuple[float, ...]]:
+    total = dict(first)
+    for key, value in second.items():
+        there = total.get(key, ())
+        total[key] = tuple(a + b for a, b in zip_longest(there, value, fillvalue=0.0))
+    return total
 
 
 NOMINAL = State()

@@ -126,6 +126,12 @@ class FieldStructure(Structure):
         """Return displacement ``w`` along z and slopes at points (n_points, dim), each (n_points, n_dofs)."""
         return self.fields.at(points)
 
+    def rows_on(
+        self, points: FloatArray, directions: FloatArray | None, basis: FloatArray
+    ) -> dict[str, FloatArray]:
+        """Return the same on a basis (n_dofs, r), each (n_points, r)."""
+        return self.fields.on(points, basis)
+
     def unit_mass(self, points: FloatArray) -> Sparse:
         """Return the mass matrix of 1 kg at each of some points [kg in w]."""
         rows = self.fields.at(points)["w"]

@@ -116,6 +116,10 @@ def shear_coefficient(poisson: float) -> float:
     return 10 * (1 + poisson) / (12 + 11 * poisson)
 
 
+ACROSS, TWIST, COUPLING = "stiffness across", "stiffness in twist", "coupling of bending"
+"""Factors of an orthotropic plate: D_y / D_x; 2 D_xy and D_1 over those of Huber, who has the geometric mean of both
+directions [-]."""
+
 PLATE_SHEAR = 5 / 6
 """Shear coefficient of plates; Reissner, J. Appl. Mech. 12 (1945) A69 [-]."""
 
@@ -123,7 +127,8 @@ PLATE_SHEAR = 5 / 6
 def plate_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldTerm, ...]:
     """Return the stiffness and mass of a plate: Kirchhoff's, or Mindlin's with shear and rotary inertia.
 
-    Mindlin, J. Appl. Mech. 18 (1951) 31-38, with Reissner's shear coefficient.
+    Mindlin, J. Appl. Mech. 18 (1951) 31-38, with Reissner's shear coefficient. Powers of D_y / D_x are those of Huber
+    (1923) for a thin plate; in a thick one the shear moduli across its thickness go with the twist.
     """
     thickness = _local(spec, region_of, "thickness", spec.thickness)
     modulus = _local(spec, region_of, "E", spec.material.E)
@@ -132,28 +137,30 @@ def plate_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldT
     w = fields.weights
     rigidity = w * modulus * thickness**3 / (12 * (1 - nu**2))
     bending = {"E": 1.0, "thickness": 3.0}
-    along, across = bending | {"length": -3.0, "width": 1.0}, bending | {"length": 1.0, "width": -3.0}
-    mixed = bending | {"length": -1.0, "width": -1.0}
+    along = bending | {"length": -3.0, "width": 1.0}
+    across = bending | {"length": 1.0, "width": -3.0, ACROSS: 1.0}
+    mixed = bending | {"length": -1.0, "width": -1.0, ACROSS: 0.5}
+    coupled, twisted = mixed | {COUPLING: 1.0}, mixed | {TWIST: 1.0}
     inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0}
     mass = FieldTerm("mass", "w", "w", w * modelled_mass(spec, region_of), inertial)
     if spec.theory == "kirchhoff":
         return (
             FieldTerm("stiffness", "wxx", "wxx", rigidity, along),
             FieldTerm("stiffness", "wyy", "wyy", rigidity, across),
-            FieldTerm("stiffness", "wxx", "wyy", 2 * nu * rigidity, mixed),
-            FieldTerm("stiffness", "wxy", "wxy", 2 * (1 - nu) * rigidity, mixed),
+            FieldTerm("stiffness", "wxx", "wyy", 2 * nu * rigidity, coupled),
+            FieldTerm("stiffness", "wxy", "wxy", 2 * (1 - nu) * rigidity, twisted),
             mass,
         )
     # rotations are per unit of stretched length, as those of Timoshenko's beam
     stiff = w * PLATE_SHEAR * modulus / (2 * (1 + nu)) * thickness
     turning = w * density * thickness**3 / 12
-    shear, rotary = {"E": 1.0, "thickness": 1.0}, {"density": 1.0, "thickness": 3.0}
+    shear, rotary = {"E": 1.0, "thickness": 1.0, ACROSS: 0.5}, {"density": 1.0, "thickness": 3.0}
     over_length, over_width = {"length": -1.0, "width": 1.0}, {"length": 1.0, "width": -1.0}
     return (
         FieldTerm("stiffness", "rxx", "rxx", rigidity, along),
         FieldTerm("stiffness", "ryy", "ryy", rigidity, across),
-        FieldTerm("stiffness", "rxx", "ryy", 2 * nu * rigidity, mixed),
-        FieldTerm("stiffness", "rt", "rt", (1 - nu) / 2 * rigidity, mixed),
+        FieldTerm("stiffness", "rxx", "ryy", 2 * nu * rigidity, coupled),
+        FieldTerm("stiffness", "rt", "rt", (1 - nu) / 2 * rigidity, twisted),
         FieldTerm("stiffness", "gx", "gx", stiff, shear | over_length),
         FieldTerm("stiffness", "gy", "gy", stiff, shear | over_width),
         mass,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from identification.pairing import counterparts, unlikeness
+from updating.models.absorbers import Absorber
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
 
@@ -204,3 +206,45 @@ def _stated(measured: Measured, prediction: Prediction) -> IntArray:
     power = np.sum(own**2, axis=0)[:, None] * np.sum(now**2, axis=0)
     alike = np.nan_to_num((own.T @ now) ** 2 / np.maximum(power, 1e-300))
     return np.where(measured.partners < 0, measured.partners, alike.argmax(axis=1))
+
+
+def partners(
+    measured: Measured, prediction: Prediction, order: IntArray, added: int
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the predicted mode of each measured one, of unpaired ones where a state adds modes, and may be.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test; its unpaired modes are compared, too.
+    prediction : Prediction
+        All modes predicted.
+    order : (n_modes,) int array
+        As of :func:`match`.
+    added : int
+        How many modes the state adds to those of the structure.
+    """
+    unpaired = measured.unpaired
+    if unpaired is None:
+        nothing = np.zeros(0, dtype=np.int64)
+        return match(measured, prediction, order), nothing, nothing
+    if added:
+        found, claims = match_with_unpaired(measured, unpaired, prediction, order, added)
+    else:
+        found, claims = match(measured, prediction, order), np.full(len(unpaired.frequency), -1)
+    return found, claims, offers(unpaired, prediction, np.append(found, claims[claims >= 0]))
+
+
+def undisturbed(now: Prediction, plain: Prediction, absorbers: Sequence[Absorber]) -> FloatArray:
+    """Return from where absorbers moved each mode: the structure's most like it, or one of theirs, (n_modes,) [Hz].
+
+    Paired by modal overlap; what finds no mode of the structure is the mode of the absorber that swings nearest.
+    """
+    alike = now.overlap(plain)
+    # what no mode of the structure has of it is the absorbers'
+    theirs = np.repeat(1 - alike.sum(axis=1, keepdims=True), len(absorbers), axis=1)
+    columns = counterparts(-np.hstack([alike, theirs]))
+    alone = np.array([np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in absorbers])
+    nearest = alone[np.argmin(np.abs(np.log(now.frequency[:, None] / alone)), axis=1)]
+    known = np.append(plain.frequency, np.full(len(absorbers), np.nan))[columns]
+    return np.asarray(np.where(np.isnan(known), nearest, known))

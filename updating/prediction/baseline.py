@@ -2,11 +2,14 @@
 
 The modes that the baseline measured take its frequencies and damping; their shapes stay the model's. What the
 baseline did not reach keeps the stiffness that the measured modes have in the middle: one factor on all of it, so
-that a clamp released later still finds a sound model. Where levels are calibrated, modal masses follow them. What
-is left is a matrix in modal coordinates, and every effect acts on top of both, the coupling of modes included.
+that a clamp released later still finds a sound model. Where levels are calibrated, modal masses follow them; where
+they are not, the level is that of the measurement chain. What is left is a matrix in modal coordinates, and every
+effect acts on top of both, the coupling of modes included.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import nnls
@@ -67,12 +70,33 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     wanted, there = (2 * np.pi * baseline.frequency) ** 2, (2 * np.pi * prediction.frequency[partner]) ** 2
     size = predictor.reduced.basis.shape[1]
     left = (momenta[:, partner] * (wanted - there)) @ momenta[:, partner].T
-    stiffness = (_padded(left, size),)
+    gain = 1.0
+    if baseline.absolute and baseline.calibration > COARSE:
+        gain = 1 / float(np.median(_level(baseline, prediction.constants[:, partner])))
+    found = State(factors=scaled.factors, stiffness=(_padded(left, size),), gain=gain)
     finite = np.isfinite(baseline.damping)
     if not finite.any():
-        return State(factors=scaled.factors, stiffness=stiffness)
+        return found
     dampers, damping = _damping(predictor, scaled, momenta[:, partner[finite]], baseline.modes(finite))
-    return State(factors=scaled.factors, stiffness=stiffness, dampers=dampers, damping=(damping,))
+    return replace(found, dampers=dampers, damping=(damping,))
+
+
+def in_one_chain(test: Measured, baseline: Measured) -> Measured:
+    """Return a test with what is in doubt of its level once a baseline was measured through the same chain.
+
+    Sensor, amplifiers and hammer are taken to be those of the baseline where the same uncertainty is stated of both
+    levels. What their calibrations are off by is then in both tests, and :func:`correct` has found it. What is left is
+    how far a level repeats: no worse than a calibrated one is known.
+
+    Parameters
+    ----------
+    test, baseline : Measured
+        Two tests of one specimen.
+    """
+    same = test.absolute and baseline.absolute and not (test.bare or baseline.bare)
+    if not same or test.calibration != baseline.calibration:
+        return test
+    return replace(test, calibration=min(test.calibration, Measured.calibration))
 
 
 def _damping(
@@ -119,12 +143,17 @@ def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]
     """
     if not baseline.absolute or baseline.calibration > COARSE:
         return 1.0, np.inf
+    level = _level(baseline, predicted)
+    heavier = float(np.median(level))
+    return heavier, float(np.hypot(baseline.calibration, np.std(level) / heavier / np.sqrt(len(level))))
+
+
+def _level(baseline: Measured, predicted: FloatArray) -> FloatArray:
+    """Return the predicted level over the measured one, as that of FRFs, of each mode far enough from a node [-]."""
     size = np.linalg.norm(predicted, axis=0)
     seen = size > LEAST_LEVEL * size.max()
     level = size[seen] / np.linalg.norm(baseline.constants[:, seen], axis=0)
-    level = level**2 if baseline.bare else level
-    heavier = float(np.median(level))
-    return heavier, float(np.hypot(baseline.calibration, np.std(level) / heavier / np.sqrt(len(level))))
+    return np.asarray(level**2 if baseline.bare else level)
 
 
 def doubt_in_mass(predictor: Predictor, baseline: Measured, order: IntArray) -> float:

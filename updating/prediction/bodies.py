@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.models.parts import PointMass
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 
@@ -19,12 +21,20 @@ class BodyChange:
     ----------
     mass : (r, r) array
         Change of the mass matrix per unit: of the logarithm of the mass [kg in w], of its place [kg/m in w].
-    of_place : bool
-        Which of the two.
+    axis : int, optional
+        Along which of the model's axes its place is in doubt; None of the mass.
+    at : float
+        Where it is stated to be along that axis [m].
     """
 
     mass: FloatArray
-    of_place: bool
+    axis: int | None = None
+    at: float = 0.0
+
+    @property
+    def of_place(self) -> bool:
+        """Whether the doubt is in the place."""
+        return self.axis is not None
 
 
 def body_changes(reduced: Reduced, spec: Spec) -> dict[str, BodyChange]:
@@ -44,12 +54,49 @@ def body_changes(reduced: Reduced, spec: Spec) -> dict[str, BodyChange]:
     """
     changes: dict[str, BodyChange] = {}
     for rank, body in enumerate(spec.masses if spec.outlined else (), start=1):
-        rows = reduced.rows(np.array([body.at[: spec.dim]], dtype=float), None)
-        moves, turns = rows["w"][0], {axis: rows[f"w{axis}"][0] for axis in "xy"[: spec.dim]}
-        rotary = sum((np.outer(turn, turn) for turn in turns.values()), np.zeros((len(moves),) * 2))
-        heavier = body.mass * np.outer(moves, moves) + body.inertia * rotary
-        changes[f"mass {rank}"] = BodyChange(heavier, of_place=False)
-        for axis, turn in turns.items():
+        moves, turns = _motion(reduced, spec, body.at[: spec.dim])
+        changes[f"mass {rank}"] = BodyChange(_inertia(body, moves, turns))
+        for axis, (name, turn) in enumerate(turns.items()):
             carried = body.mass * np.outer(moves, turn)
-            changes[f"mass {rank} {axis}"] = BodyChange(carried + carried.T, of_place=True)
+            changes[f"mass {rank} {name}"] = BodyChange(carried + carried.T, axis, float(body.at[axis]))
     return changes
+
+
+def displaced(reduced: Reduced, spec: Spec, by: Mapping[str, float]) -> tuple[FloatArray, ...]:
+    """Return what the mass matrix gains where bodies are heavier and elsewhere, (r, r) each [kg in w].
+
+    Parameters
+    ----------
+    reduced, spec
+        As in :func:`body_changes`.
+    by : mapping of str to float
+        Change of the logarithm of each mass [-] and of its place [m], by the names of :func:`body_changes`; a place
+        stays on the structure.
+    """
+    gains = []
+    for rank, body in enumerate(spec.masses if spec.outlined else (), start=1):
+        axes = "xy"[: spec.dim]
+        step = np.array([by.get(f"mass {rank} {axis}", 0.0) for axis in axes])
+        factor = float(np.exp(by.get(f"mass {rank}", 0.0)))
+        if factor == 1.0 and not step.any():
+            continue
+        at = np.array(body.at[: spec.dim], dtype=float)
+        size = np.array([spec.length, spec.width][: spec.dim])
+        there = np.clip(at + step, np.minimum(at, 0.0), np.maximum(at, size))
+        before, after = (_inertia(body, *_motion(reduced, spec, place)) for place in (at, there))
+        gains.append(factor * after - before)
+    return tuple(gains)
+
+
+def _motion(
+    reduced: Reduced, spec: Spec, at: FloatArray | Sequence[float]
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return displacement (r,) and slope along each axis (r,) of the basis at a place."""
+    rows = reduced.rows(np.array([at], dtype=float), None)
+    return rows["w"][0], {axis: rows[f"w{axis}"][0] for axis in "xy"[: spec.dim]}
+
+
+def _inertia(body: PointMass, moves: FloatArray, turns: Mapping[str, FloatArray]) -> FloatArray:
+    """Return the mass matrix of a body, its rotary inertia included, (r, r) [kg in w]."""
+    rotary = sum((np.outer(turn, turn) for turn in turns.values()), np.zeros((len(moves),) * 2))
+    return np.asarray(body.mass * np.outer(moves, moves) + body.inertia * rotary)

@@ -192,8 +192,8 @@ def _as_stated(measured: Measured, prediction: Prediction, keep: BoolArray) -> B
 
 
 MOSTLY_ALONE = (
-    "most measured modes have no partner: test and model may not be the same structure, or points and signs are "
-    "mistaken"
+    "most measured modes have no partner: test and model may not be the same structure, or points or signs are "
+    "wrong"
 )
 """The warning in that case."""
 
@@ -290,7 +290,7 @@ def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
             f"and of the test (Hz){_probable(ratio)}"
         )
     far = max(ratio, 1 / ratio) > DISTANT
-    return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()
+    return (f"{times}, and they are paired by their order alone: they may be different modes",) if far else ()
 
 
 __all__ = ["Paired", "mac_of_constants", "match", "pair_modes"]

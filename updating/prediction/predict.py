@@ -2,42 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
-from scipy import linalg
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from updating.environment import Environment
-from updating.models.absorbers import padded, structural, swinging_mass
+from updating.models.absorbers import padded, structural
 from updating.models.build import build_structure
+from updating.models.clamped import Clamped
 from updating.models.complex_modes import ComplexModes, complex_modes
-from updating.models.damped_modes import Damped, damped, modes_taking_part, turns_modes
+from updating.models.damped_modes import Damped
 from updating.models.damping import (
     Matrices,
-    coupled,
-    damping_matrices,
     layer_slowing,
-    modal_damping,
-    modal_losses,
 )
-from updating.models.reduced import Reduced, reduce_structure
+from updating.models.reduced import Reduced
+from updating.models.reduction import reduce_structure
 from updating.models.response import receptance
 from updating.models.shear import sheared
-from updating.models.spec import Damping, Spec, Theory
+from updating.models.spec import Spec, Theory
 from updating.models.state import NOMINAL, State
 from updating.models.whole import Whole
+from updating.prediction.as_read import constants_change, gained_per_newton, level_of, made_real, turned
 from updating.prediction.bodies import BodyChange, body_changes
+from updating.prediction.dampers import Dampers, expects_damping
 from updating.prediction.prediction import Prediction
-from updating.prediction.sensitivities import sensitivities
+from updating.prediction.sensitivities import Sensitivities
 from updating.prediction.stretch import Stretch
 from updating.prediction.window_left import with_window
-from updating.test_data.chain import MeasurementChain, measurement_chain
-from updating.test_data.chain_phase import chain_phases
+from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 
 T = TypeVar("T")
@@ -108,11 +106,17 @@ class Predictor(Displayed):
         return reduce_structure(build_structure(self.spec), points, directions, modes=modes)
 
     @cached_property
+    def clamped(self) -> Predictor:
+        """The same specimen on the columns that it needs while its clamps hold; itself where that saves little."""
+        small = self.reduced if self.base.released else Clamped.of(self.reduced)
+        return self if small is self.reduced else self.on(small)
+
+    @cached_property
     def whole(self) -> Predictor:
         """The same specimen on all degrees of freedom, for states of its full matrices."""
         return self.on(Whole.of(self.reduced))
 
-    def once(self, name: str, build: Callable[[], T]) -> T:
+    def once(self, name: Hashable, build: Callable[[], T]) -> T:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""
         if name not in self._kept:
             self._kept[name] = build()
@@ -120,7 +124,7 @@ class Predictor(Displayed):
         return found
 
     @cached_property
-    def _kept(self) -> dict[str, Any]:
+    def _kept(self) -> dict[Hashable, Any]:
         return {}
 
     @property
@@ -167,39 +171,27 @@ class Predictor(Displayed):
             Number of modes; left out, those up to 1.6 times the highest measured frequency and three more.
         at_least : int
             Fewest modes where ``count`` is left out.
-
-        Returns
-        -------
-        Prediction
         """
         total = self.base.plus(state)
         if total.theory is not None and total.theory != self.spec.theory:
-            other = self.under(total.theory)
-            bare = replace(state, theory=None)
+            other, bare = self.under(total.theory), replace(state, theory=None)
             return other.predict(bare, factors=factors, count=count, at_least=at_least)
         values, vectors = self.reduced.eigen(total)
         chosen = self._chosen(values, count, at_least)
-        first = self.reduced.structure.rigid_modes
         read = measurement_chain(self.measured, total)
         axes = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         rows = self._rows(total, read.points)
         moving = structural(vectors, total.absorbers)
-        damped_modes = self._damped(total, values, vectors, chosen)
-        modes = (
-            moving[:, chosen]
-            if damped_modes is None
-            else _turned(moving[:, first:] @ damped_modes.turn, moving[:, chosen], rows["w"])
-        )
+        damped_modes = self.dampers.coupled_modes(total, values, vectors, chosen)
+        modes = self._modes_seen(moving, chosen, damped_modes, rows["w"])
         whole = {n: m[:, : len(modes)] @ modes for n, m in rows.items()}
         shapes = {n: np.real(m) for n, m in whole.items()}
-        by, changes = np.zeros((0, len(chosen))), np.zeros((0, len(read.points), len(chosen)))
-        if factors:
-            by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
-        slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
-        # what a layer carries along is modal mass
-        level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
+        by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
+        level = level_of(read, layer_slowing(total, values[chosen], vectors[:, chosen]))
         product = read.product(whole["w"], whole["w"])
-        constants, phase = (product, None) if damped_modes is None else self._made_real(product)
+        constants, phase = (
+            (product, None) if damped_modes is None else made_real(product, self.measured.channel_group)
+        )
         frequency, damping = self._read_poles(total, values, vectors, chosen, damped_modes)
         return Prediction(
             frequency=frequency,
@@ -210,12 +202,21 @@ class Predictor(Displayed):
             seen_slopes=np.stack([shapes[n][read.seen] for n in axes]),
             hit_slopes=np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
             log_frequency_by=by.T,
-            constants_by=level[:, :, None] * _change(shapes["w"], changes, read),
+            constants_by=level[:, :, None] * constants_change(shapes["w"], changes, read),
             vectors=np.real(modes),
-            slope=total.slope + _gained(total, values[chosen], moving[:, chosen]),
-            gain=np.asarray(level),
+            slope=total.slope + gained_per_newton(total, values[chosen], moving[:, chosen]),
+            gain=level,
             phase=phase,
         )
+
+    def _modes_seen(
+        self, moving: FloatArray, chosen: IntArray, damped_modes: Damped | None, rows: FloatArray
+    ) -> FloatArray | ComplexArray:
+        """Return the shapes of the modes chosen on the basis, complex where dampers couple them, (r, n_modes)."""
+        if damped_modes is None:
+            return moving[:, chosen]
+        elastic = moving[:, self.reduced.structure.rigid_modes :]
+        return turned(elastic @ damped_modes.turn, moving[:, chosen], rows)
 
     def _read_poles(
         self,
@@ -229,10 +230,10 @@ class Predictor(Displayed):
         square, own = values[chosen], vectors[:, chosen]
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         moved = shift * layer_slowing(total, square, own)
-        moved = moved * self._slowed(total, values, vectors, chosen, damped_modes)
+        moved = moved * self.dampers.slowed(total, values, vectors, chosen, damped_modes)
         return with_window(
             moved * np.sqrt(np.where(square > 0, square, np.nan)) / (2 * np.pi),
-            self._damping(total, square, own) if damped_modes is None else damped_modes.ratio,
+            self.dampers.ratios(total, square, own) if damped_modes is None else damped_modes.ratio,
             total.decay,
         )
 
@@ -244,43 +245,6 @@ class Predictor(Displayed):
             count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
         return np.arange(first, min(first + count, len(values)))
 
-    def _made_real(self, product: ComplexArray) -> tuple[FloatArray, FloatArray | None]:
-        """Return complex constants (n_frf, n_modes) turned to the real axis, and by how much in each chain [rad]."""
-        if not len(product):
-            return np.real(product), None
-        chains = self.measured.channel_group
-        chains = np.zeros(len(product), dtype=np.int64) if chains is None else chains
-        phase = chain_phases(product, chains)
-        return np.real(product * np.exp(-1j * phase[chains])), phase
-
-    def _damped(
-        self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray
-    ) -> Damped | None:
-        """Return the modes that dashpots of absorbers, or other dampers, couple; None where they hardly do."""
-        first = self.reduced.structure.rigid_modes
-        size = modes_taking_part(values[first:], len(chosen))
-        near = slice(first, first + size)
-        dashpots = any(one.damping for one in state.absorbers)
-        if np.isnan(values).any() or not (dashpots or turns_modes(state, values[near], vectors[:, near])):
-            return None
-        elastic = values[first:]
-        modes, omega = vectors[:, near], np.sqrt(np.maximum(elastic[:size], 1e-12))
-        viscous, hysteretic = (modes.T @ matrix @ modes for matrix in self._damping_matrices(state))
-        rates = 2 * self._ratios(state, modes) * omega + modal_losses(state, elastic[:size], modes)
-        viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates)
-        found = damped(elastic, viscous, len(chosen))
-        return found if self.expects(state) else replace(found, ratio=np.full(len(chosen), np.nan))
-
-    def _slowed(
-        self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray, damped: Damped | None
-    ) -> FloatArray:
-        """Return the factors on frequencies where dampers couple modes, those solved for with their damping in it."""
-        if damped is None:
-            return coupled(state, values, vectors, chosen)
-        first = self.reduced.structure.rigid_modes
-        solved = slice(first, first + damped.taking_part)
-        return np.asarray(damped.slowing * coupled(state, values, vectors, chosen, solved))
-
     def slowing(self, state: State, count: int) -> FloatArray:
         """Return the factors (count,) on the lowest frequencies of a state where dampers couple modes."""
         total, first = self.base.plus(state), self.reduced.structure.rigid_modes
@@ -288,7 +252,8 @@ class Predictor(Displayed):
             return np.ones(count)
         values, vectors = self.reduced.eigen(total)
         chosen = np.arange(first, first + count)
-        return self._slowed(total, values, vectors, chosen, self._damped(total, values, vectors, chosen))
+        found = self.dampers.coupled_modes(total, values, vectors, chosen)
+        return self.dampers.slowed(total, values, vectors, chosen, found)
 
     @cached_property
     def nominal_rows(self) -> dict[str, FloatArray]:
@@ -340,7 +305,9 @@ class Predictor(Displayed):
         places: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Return derivatives of ln f and of the shapes at places by the logarithms of factors."""
-        by, turns = sensitivities(self.reduced, self.spec, state, eigen, chosen, names, self.body_changes)
+        if not names:
+            return np.zeros((0, len(chosen))), np.zeros((0, len(places), len(chosen)))
+        by, turns = self._sensitivities(tuple(names)).of(state, eigen, chosen)
         vectors = eigen[1]
         n = len(vectors)
         change = (rows["w"][:, :n] @ vectors) @ turns
@@ -350,46 +317,21 @@ class Predictor(Displayed):
                 change[names.index(name)] += (moved * rows[slope][:, :n]) @ vectors[:, chosen]
         return by, change
 
-    def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
-        """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""
-        omega = np.sqrt(np.maximum(values, 1e-12))
-        if not self.expects(state):
-            return np.asarray(np.full(len(values), np.nan))
-        expected = Damping() if state.damping else self.spec.damping
-        c, d = modal_damping(self.reduced, expected, state, values, vectors)
-        slow = layer_slowing(state, values, vectors)
-        rate = c + modal_losses(state, values, vectors)
-        added = d / (2 * omega**2) + self._ratios(state, vectors)
-        return np.asarray(slow * rate / (2 * omega) + added)
+    def _sensitivities(self, names: tuple[str, ...]) -> Sensitivities:
+        """Return the derivatives by some factors, kept for the next state."""
+        return self.once(
+            ("sensitivities", names),
+            lambda: Sensitivities(self.reduced, self.spec, names, self.body_changes),
+        )
 
     def expects(self, state: State) -> bool:
         """Whether model, regions or the state say what damping to expect."""
-        own = any(v is not None for r in self.spec.regions for v in (r.alpha, r.beta, r.loss_factor))
-        stated = bool(state.damping) or bool(state.dampers) or state.ratios is not None
-        return self.spec.damping.known or own or stated
+        return expects_damping(self.spec, state)
 
-    def _damping_matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
-        """Return C and D; damping matrices in the state replace what the model expects."""
-        expected = Damping() if state.damping else self.spec.damping
-        return damping_matrices(self.reduced, expected, state)
-
-    def _ratios(self, state: State, vectors: FloatArray) -> FloatArray:
-        """Return the damping ratios that state or modeller give mode by mode, the last for all above, (n_modes,) [-].
-
-        They are those of the structure: of the lowest elastic modes (r, n_modes) each has its share in modal mass, and
-        its rank by the shares below it.
-        """
-        given = self._given(state)
-        if given is None:
-            return np.zeros(vectors.shape[1])
-        share = 1 - swinging_mass(vectors, state.absorbers)
-        rank = np.round(np.cumsum(share) - share).astype(int)
-        return np.asarray(np.asarray(given)[np.clip(rank, 0, len(given) - 1)] * share, dtype=float)
-
-    def _given(self, state: State) -> tuple[float, ...] | None:
-        if state.ratios is not None:
-            return state.ratios
-        return None if state.damping else self.spec.damping.ratios or None
+    @cached_property
+    def dampers(self) -> Dampers:
+        """What damps the modes of this specimen's states."""
+        return Dampers(self.reduced, self.spec)
 
     def matrices(self, state: State = NOMINAL) -> Matrices:
         """Return K, M, C and D of a state on top of ``base``; modal ratios enter C through the state's own modes.
@@ -399,23 +341,7 @@ class Predictor(Displayed):
         state : State
             Departure from the nominal model, under the predictor's own theory.
         """
-        total = self.base.plus(state)
-        stiffness, mass = self.reduced.matrices(total)
-        viscous, structural = self._damping_matrices(total)
-        modal = any(loss.power not in (0.0, -1.0) for loss in total.losses)
-        if self._given(total) is not None or modal:
-            values, vectors = linalg.eigh(stiffness, mass)
-            first = self.reduced.structure.rigid_modes
-            rates = np.zeros(len(values))
-            omega = np.sqrt(np.maximum(values[first:], 0))
-            rates[first:] = 2 * self._ratios(total, vectors[:, first:]) * omega
-            rates[first:] += modal_losses(total, values[first:], vectors[:, first:])
-            momenta = mass @ vectors
-            slowing = np.ones(len(values))
-            slowing[first:] = layer_slowing(total, values[first:], vectors[:, first:])
-            mass = mass + (momenta * (slowing**-2 - 1)) @ momenta.T
-            viscous = viscous + (momenta * rates) @ momenta.T
-        return Matrices(stiffness, mass, viscous, structural, self.reduced.structure.rigid_modes)
+        return self.dampers.matrices(self.base.plus(state))
 
     def complex_modes(self, state: State = NOMINAL) -> ComplexModes:
         """Return the damped modes of a state, exact for damping that is not proportional."""
@@ -459,31 +385,3 @@ class Predictor(Displayed):
             return self.under(total.theory).receptance(laplace, replace(state, theory=None))
         seen, hit = self.frf_rows(state)
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
-
-
-def _turned(modes: ComplexArray, undamped: FloatArray, rows: FloatArray) -> ComplexArray:
-    """Return complex modes (r, n_modes), each turned to be as real as it can be at points with rows (n_points, r).
-
-    Their signs are those of the undamped ones, whose derivatives are theirs.
-    """
-    seen, before = rows[:, : len(modes)] @ modes, rows[:, : len(modes)] @ undamped
-    turned = modes * np.exp(-0.5j * np.angle(np.sum(seen**2, axis=0)))
-    same = np.sum(np.real(rows[:, : len(modes)] @ turned) * before, axis=0)
-    return np.asarray(turned * np.where(same < 0, -1.0, 1.0))
-
-
-def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Return d ln f per newton of modes (r, n_modes), by the strain energy in what stiffens with the force [1/N]."""
-    total = np.zeros(len(values))
-    for matrix in state.per_newton:
-        size = len(vectors)
-        total += np.sum(vectors * (matrix[:size, :size] @ vectors), axis=0)
-    return np.asarray(total / (2 * np.maximum(values, 1e-12)))
-
-
-def _change(shape: FloatArray, changes: FloatArray, read: MeasurementChain) -> FloatArray:
-    """Return what changes (k, n_points, n_modes) of the shapes change the constants by, (n_frf, n_modes, k)."""
-    left, right = shape[read.seen], shape[read.hit]
-    d_left, d_right = changes[:, read.seen], changes[:, read.hit]
-    whole = np.where(read.hit[:, None] < 0, d_left, d_left * right + left * d_right)
-    return np.asarray(np.moveaxis(whole, 0, -1))

@@ -14,7 +14,7 @@ from updating.effects.base import Values
 from updating.likelihood.base import Doubt
 from updating.likelihood.outliers import Outlier, log_price
 from updating.models.spec import FULLER
-from updating.models.state import State, combine
+from updating.models.state import NOMINAL, State, combine
 from updating.prediction.predict import Predictor
 from updating.prediction.stretch import is_placed
 
@@ -68,7 +68,8 @@ class Candidate:
         """Return the predictor the effects act on."""
         theory = predictor.spec.fuller
         wanted = self.fuller or any(effect.fuller for effect in self.effects)
-        return predictor.under(theory) if wanted and theory is not None else predictor
+        stage = predictor.under(theory) if wanted and theory is not None else predictor
+        return stage.clamped if all(effect.keeps_clamps for effect in self.effects) else stage
 
     def parameters(self, predictor: Predictor) -> tuple[tuple[str, Parameter], ...]:
         """Return the parameters that are searched, as (effect.parameter, prior)."""
@@ -89,7 +90,7 @@ class Candidate:
         start = 0
         for effect, form in zip(self.effects, self.forms, strict=True):
             quantiles = []
-            for parameter in effect.parameters(stage):
+            for parameter in effect.priors(stage):
                 fixed = parameter.name in form.values
                 quantiles.append(MIDDLE if fixed else form.quantile(parameter.name, coordinates[start]))
                 start += not fixed
@@ -103,7 +104,7 @@ class Candidate:
         for effect, form in zip(self.effects, self.forms, strict=True):
             head = f"{effect.key}."
             own = {n.removeprefix(head): v for n, v in values.items() if n.startswith(head)}
-            known = zip(effect.parameters(stage), effect.quantiles(stage, own), strict=True)
+            known = zip(effect.priors(stage), effect.quantiles(stage, own), strict=True)
             found += [form.coordinate(p.name, u) for p, u in known if p.name not in form.values]
         return np.asarray(np.clip(np.array(found, dtype=float), 0.0, 1.0))
 
@@ -114,7 +115,8 @@ class Candidate:
 
     def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
         """Return the state of the model at values of the effects, places those on the stretched structure."""
-        theory = State(theory=FULLER.get(stage.spec.kind) if self.fuller else None)
+        fuller = FULLER.get(stage.spec.kind) if self.fuller else None
+        theory = NOMINAL if fuller is None else State(theory=fuller)
         spread = combine([effect.state(stage, v) for effect, v in parts if not is_placed(v)])
         placed = [effect.state(stage, stage.unstretched(v, spread)) for effect, v in parts if is_placed(v)]
         return combine([spread, *placed, theory])
@@ -144,11 +146,11 @@ class Candidate:
 
 
 def _free(effect: Effect, form: Variant, predictor: Predictor) -> list[Parameter]:
-    return [p for p in effect.parameters(predictor) if p.name not in form.values]
+    return [p for p in effect.priors(predictor) if p.name not in form.values]
 
 
 def _starts(effect: Effect, form: Variant, stage: Predictor) -> list[tuple[float, ...]]:
-    names = [p.name for p in effect.parameters(stage)]
+    names = [p.name for p in effect.priors(stage)]
     own = [
         tuple(form.coordinate(n, u) for n, u in zip(names, start, strict=True) if n not in form.values)
         for start in effect.starts(stage)

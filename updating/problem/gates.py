@@ -174,7 +174,7 @@ def on_levels(measured: Measured, *, fluid: bool) -> list[str]:
     stated = f"frequencies follow the force of the hits: {size:+.2g} % on average at {quantity(measured.level, 'N')}"
     if fluid:
         return [
-            f"{stated}; so the fluid is not still, or a joint is not linear: "
-            "added mass for small motion is at its limit"
+            f"{stated}; the fluid moves, or a joint is nonlinear: the added "
+            "mass is computed for small motion in a fluid at rest"
         ]
     return [f"{stated}: the structure is not linear at the level of this test; hit more softly"]

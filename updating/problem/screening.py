@@ -113,7 +113,7 @@ def beside(
     """
     effects = tuple(effect for one, _ in parts for effect in one.effects)
     stage = Candidate(effects, fuller=any(one.fuller for one, _ in parts)).stage(predictor)
-    screens = [_screen(one, stage, grid) for one, _ in parts]
+    screens = [_screen(one, stage.clamped, grid) for one, _ in parts]
     if all(screen is None for screen in screens):
         return None
     places, lowest = [place for _, place in parts], np.inf
@@ -123,7 +123,7 @@ def beside(
             if screen is None:
                 continue
             others = [one.state(stage, places[k].tolist()) for k, (one, _) in enumerate(parts) if k != i]
-            misfit = screen.misfits(stage, replace(combine(others), theory=None))
+            misfit = screen.misfits(stage.clamped, replace(combine(others), theory=None))
             if misfit is None:
                 return None
             places[i], lowest = screen.tried[misfit.argmin()], float(misfit.min())
@@ -158,7 +158,10 @@ class _Screen:
 
     def misfits(self, stage: Predictor, others: State) -> FloatArray | None:
         """Return the misfits of all beside other changes (n,) [-]; None where these bring unknowns of their own."""
-        matrices = stage.reduced.matrices(stage.base.plus(others))
+        total = stage.base.plus(others)
+        if total.released not in stage.reduced.ranks:
+            return None
+        matrices = stage.reduced.matrices(total)
         if len(matrices[0]) != len(self.basis):
             return None
         both = np.array([self.basis.T @ part @ self.basis for part in matrices])
@@ -280,8 +283,7 @@ def _misfits(
     off = np.log(test.frequency[:, None] / frequency[:, None, :])  # (states, measured, modes)
     unlike = np.zeros_like(off)
     if test.has_shapes:
-        modes = (basis @ lower.transpose(0, 2, 1) @ vectors)[:, :, elastic:]
-        unlike = 1 - _macs(stage, others, modes)
+        unlike = 1 - _macs(stage, others, basis, (lower.transpose(0, 2, 1) @ vectors)[:, :, elastic:])
     nearest = np.argmin(off**2 + unlike, axis=2)[..., None]
     off, unlike = (np.take_along_axis(one, nearest, axis=2)[..., 0] for one in (off, unlike))
     metric = common_metric(count)
@@ -292,10 +294,15 @@ def _misfits(
     return np.where(heavy, misfit, np.inf)
 
 
-def _macs(stage: Predictor, others: State, modes: FloatArray) -> FloatArray:
-    """Return the MAC of the measured constants with those of modes (n_states, r, m), (n_states, n_modes, m) [-]."""
+def _macs(stage: Predictor, others: State, basis: FloatArray, modes: FloatArray) -> FloatArray:
+    """Return the MAC of the measured constants with those of modes (n_states, k, m) on a basis (r, k).
+
+    Returns
+    -------
+    (n_states, n_modes, m) array [-]
+    """
     test, read = stage.measured, measurement_chain(stage.measured, stage.base.plus(others))
-    shapes = stage.point_rows(others, read.points)[:, : modes.shape[1]] @ modes
+    shapes = (stage.point_rows(others, read.points)[:, : len(basis)] @ basis) @ modes
     moved = shapes.transpose(1, 0, 2)
     predicted = read.product(moved, moved)
     across = np.einsum("fr,fbm->brm", test.constants, predicted) ** 2

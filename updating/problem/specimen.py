@@ -16,12 +16,11 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from identification.pairing import counterparts
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import Obstacle
 from updating.likelihood.base import NO_DOUBT, Doubt, Quantity, Setting, View
 from updating.likelihood.baseline_prior import Before
-from updating.likelihood.comparison import Comparison, assemble
+from updating.likelihood.comparison import Block, Comparison, Layout, assemble
 from updating.likelihood.constants import Constants, scatter_prior
 from updating.likelihood.damping import Dampings
 from updating.likelihood.fading_noise import FadingNoise
@@ -30,20 +29,23 @@ from updating.likelihood.gaussian import gaussian
 from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
+from updating.likelihood.places import Places
 from updating.likelihood.trend import Trends
 from updating.likelihood.unpaired import UnpairedModes
-from updating.models.absorbers import Absorber, swinging
-from updating.models.base import FACTORS
-from updating.models.named_factors import departure, regions_of, unassigned
+from updating.models.absorbers import swinging
 from updating.models.state import NOMINAL, State
-from updating.prediction.assignment import match_with_unpaired, offers
+from updating.prediction.assignment import partners, undisturbed
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
-from updating.problem.theory_error import TheoryError
+from updating.problem.doubted import Doubted
+from updating.problem.theory_error import TheoryError, left_out
 from updating.test_data.measured import Measured
-from updating.thresholds import SHAPE_NOISE_SCALES, STATED_MASS_DOUBT, STRAINED_LINEARISATION
+from updating.thresholds import (
+    STRAINED_LINEARISATION,
+    UNSEEN_SHARES,
+)
 from updating.tolerances import Tolerances
 
 
@@ -136,28 +138,29 @@ class SpecimenProblem:
         coordinates : (k,) array
             Prior quantiles of their parameters [-].
         shift : (p,) array, optional
-            Nuisances about which tolerances are linearised; left out, none [standard deviations].
+            Nuisances about which the prediction is linearised, see :meth:`compare`; left out, none [standard
+            deviations].
         """
         (state,) = self.place(candidate, coordinates)
-        stated = None if shift is None else shift[: len(self.names)]
-        found = self.compare(state, stated, doubt=candidate.doubt_on(self.predictor))
+        found = self.compare(state, shift, doubt=candidate.doubt_on(self.predictor))
         return with_outliers(found, candidate.outliers)
 
     @cached_property
+    def doubted(self) -> Doubted:
+        """What all data doubt alike."""
+        return Doubted(
+            self.predictor, self.tolerances, self.measured.position_sigma, self.baseline is not None
+        )
+
+    @property
     def names(self) -> tuple[str, ...]:
         """What is doubted alike by all data: factors of the whole and of regions, masses and places of bodies."""
-        known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
-        whole = [n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0]
-        own = dict.fromkeys(
-            [*self.tolerances.parts, *self.tolerances.bounds, *unassigned(self.predictor.spec)]
-        )
-        regional = [n for n in own if self._sigma(n) > 0 and self._of_regions(n, known)]
-        return (*whole, *regional, *self.predictor.body_changes)
+        return self.doubted.names
 
-    def _of_regions(self, name: str, known: set[str]) -> bool:
-        """Return whether a name is a factor of regions of the model."""
-        regions, factor = regions_of(self.predictor.spec, name)
-        return bool(regions) and factor in known
+    @property
+    def sigmas(self) -> FloatArray:
+        """Their standard deviations [-, of places m]."""
+        return self.doubted.sigmas
 
     @property
     def reach(self) -> int:
@@ -178,39 +181,6 @@ class SpecimenProblem:
             self.before_additions,
         )
 
-    @cached_property
-    def sigmas(self) -> FloatArray:
-        """Their standard deviations [-, of places m]."""
-        return np.array([self._sigma(name) for name in self.names])
-
-    def _sigma(self, name: str) -> float:
-        if (change := self.predictor.body_changes.get(name)) is not None:
-            return self.measured.position_sigma if change.of_place else STATED_MASS_DOUBT
-        return self.tolerances.factor(name)
-
-    @cached_property
-    def _relative_sigmas(self) -> FloatArray:
-        """The standard deviations, those of places relative to the size of the model [-]."""
-        places = {name for name, change in self.predictor.body_changes.items() if change.of_place}
-        size = [self.predictor.spec.length if name in places else 1.0 for name in self.names]
-        return np.asarray(self.sigmas / size)
-
-    def departure(self, shift: FloatArray, stage: Predictor) -> State:
-        """Return the departure that nuisances make in what all data doubt alike.
-
-        Parameters
-        ----------
-        shift : (n_names,) array
-            Nuisances [standard deviations].
-        stage : Predictor
-            What it is put on: this specimen's, under one theory or another, each with a basis of its own.
-        """
-        moved = dict(zip(self.names, (shift * self.sigmas).tolist(), strict=True))
-        bodies = stage.body_changes
-        factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in bodies}
-        masses = tuple(by * bodies[name].mass for name, by in moved.items() if name in bodies and by)
-        return departure(self.predictor.spec, factors).plus(State(mass=masses))
-
     @property
     def nominal(self) -> Prediction:
         """The nominal prediction of the matched modes."""
@@ -230,26 +200,23 @@ class SpecimenProblem:
 
     def _partners(self, prediction: Prediction, added: int) -> tuple[IntArray, IntArray, IntArray]:
         """Return the predicted mode of each measured one, of unpaired ones where a state adds modes, and may be."""
-        unpaired = self.measured.unpaired
-        if unpaired is None:
-            nothing = np.zeros(0, dtype=np.int64)
-            return self._match(prediction), nothing, nothing
-        if added:
-            order, claims = match_with_unpaired(self.measured, unpaired, prediction, self.order, added)
-        else:
-            order, claims = self._match(prediction), np.full(len(unpaired.frequency), -1)
-        return order, claims, offers(unpaired, prediction, np.append(order, claims[claims >= 0]))
+        return partners(self.measured, prediction, self.order, added)
 
     @property
     def wide(self) -> bool:
         """Whether tolerances are too wide for one linearisation, or bend what is measured beyond its noise.
 
-        Never beside a baseline, see :meth:`compare`.
+        So may the places of points, three standard deviations from where they are stated. Never beside a baseline, see
+        :meth:`compare`.
         """
-        if not len(self.sigmas) or self.baseline is not None:
+        if self.baseline is not None:
+            return False
+        if 9.0 * self.place_bending.max(initial=0.0) > 1.0:
+            return True
+        if not len(self.sigmas):
             return False
         # half the square of 4 % is the error of a linearisation in ln f, as large as its usual noise
-        return float(self._relative_sigmas.max()) > 0.04 or float(self.bending.max()) > 1.0
+        return float(self.doubted.relative.max()) > 0.04 or float(self.bending.max()) > 1.0
 
     @cached_property
     def bending(self) -> FloatArray:
@@ -267,21 +234,42 @@ class SpecimenProblem:
             there = self.compare(NOMINAL, shift)
             # a comparison's residual is carried back to no shift: by its own slope there, by the first one here
             off = there.residual - start.residual - (there.nuisance - start.nuisance)[:, :count] @ shift
-            left = gaussian(replace(start, residual=np.nan_to_num(off)), SHAPE_NOISE_SCALES[:1]).chi2
-            found.append(float(np.sqrt(left[0, 0])))
+            left = gaussian(replace(start, residual=np.nan_to_num(off)), (1.0,)).fit.chi2
+            found.append(float(np.sqrt(left[0, 0, 0])))
         return np.array(found)
 
     def strain(self, shift: FloatArray) -> float:
-        """Return the largest relative change that tolerances (n_names,) make of a property [-].
+        """Return the largest relative change that nuisances (n_names + n_places,) make of a property [-].
 
-        What bends the data counts as that change of a property which a linearisation bears as well. Beside a baseline
-        they make none.
+        What bends the data by its noise counts as that change of a property which a linearisation bears. Beside a
+        baseline they make none.
         """
         if self.baseline is not None:
             return 0.0
-        bent = np.sqrt(self.bending) * STRAINED_LINEARISATION
-        moved = np.abs(shift) * np.maximum(self._relative_sigmas, bent)
+        bent = np.sqrt(np.append(self.bending, self.place_bending)) * STRAINED_LINEARISATION
+        relative = np.append(self.doubted.relative, np.zeros(len(self.place_bending)))
+        moved = np.abs(shift) * np.maximum(relative, bent)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
+
+    @property
+    def linearised(self) -> int:
+        """About how many nuisances a prediction may be linearised: what all data doubt alike, and places of points."""
+        return len(self.names) + len(self.place_bending)
+
+    @cached_property
+    def _places(self) -> Places | None:
+        return next((one.places for one in self.quantities if isinstance(one, Constants)), None)
+
+    @cached_property
+    def place_bending(self) -> FloatArray:
+        """How far constants leave their linearisation at one standard deviation of each place, (n_places,) [noise]."""
+        if self._places is None or not self._places.marks:
+            return np.zeros(0)
+        start = self.compare(NOMINAL)
+        of = start.of("frf")
+        count = len(self.measured.frequency)
+        least = start.settled(1.0, UNSEEN_SHARES[-1]).variance[of].reshape(-1, count).mean(axis=0)
+        return self._places.bending(self.nominal, np.sqrt(least))
 
     def compare(
         self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT
@@ -292,23 +280,47 @@ class SpecimenProblem:
         ----------
         state : State
             Departure from the nominal model.
-        shift : (n_names,) array, optional
-            Tolerance nuisances applied to the model before it is linearised [standard deviations]. Beside a baseline
-            none is: it corrects any specimen to the same modes, and one moved by them alone would count them twice.
+        shift : (n_names,) or (n_names + n_places,) array, optional
+            Nuisances applied to the model before it is linearised, tolerances and then the places of points [standard
+            deviations]. Beside a baseline none is: it corrects any specimen to the same modes, and one moved by them
+            alone would count them twice.
         doubt : Doubt
             What the state leaves in doubt.
         """
-        shift = np.zeros(len(self.names)) if shift is None or self.baseline is not None else shift
+        stated = np.zeros(0) if shift is None or self.baseline is not None else shift
+        count = len(self.names)
+        shift = stated[:count] if len(stated) else np.zeros(count)
+        elsewhere, places = NOMINAL, np.zeros(0)
+        if self._places is not None and stated[count:].any():
+            elsewhere, places = self._places.elsewhere(stated[count:], self.predictor.base.plus(state))
         theory = self.predictor.base.plus(state).theory
         stage = self.predictor if theory is None else self.predictor.under(theory)
-        whole = state.plus(self.departure(shift, stage))
+        whole = state.plus(self.doubted.departure(shift, stage)).plus(elsewhere)
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
         partners = self._partners(prediction, len(swinging(state.absorbers)))
         view = View(
-            prediction.select(partners[0]), self.predictor.base.plus(whole), doubt, prediction, *partners[1:]
+            prediction.select(partners[0]),
+            self.predictor.base.plus(whole),
+            doubt,
+            prediction,
+            *partners[1:],
+            places=places,
         )
         blocks = [quantity.block(view) for quantity in self.quantities]
-        return assemble(blocks, self.sigmas, shift, view.now, scatter_prior(self.measured))
+        return assemble(
+            blocks, self._layout(blocks), self.sigmas, shift, view.now, scatter_prior(self.measured)
+        )
+
+    def _layout(self, blocks: Sequence[Block]) -> Layout:
+        """Return where the data of each block stand: one layout for all states with as many nuisances of each kind."""
+        key = tuple((block.named.shape[1], block.own.shape[1]) for block in blocks)
+        if key not in self._layouts:
+            self._layouts[key] = Layout.of(blocks, len(self.sigmas))
+        return self._layouts[key]
+
+    @cached_property
+    def _layouts(self) -> dict[tuple[tuple[int, int], ...], Layout]:
+        return {}
 
     @cached_property
     def quantities(self) -> tuple[Quantity, ...]:
@@ -348,17 +360,9 @@ class SpecimenProblem:
         return Dampings(self.setting).rows
 
     def _left_out(self) -> tuple[FloatArray, FloatArray]:
-        """Return what mesh and theory leave off in ln f: columns common to all modes, variance mode by mode.
-
-        Nothing where nothing is known of it, or a baseline took it out. Half of the mesh's own error is in doubt mode
-        by mode, beside all of it in common (judged).
-        """
-        found = self.theory_error
-        if found is None or not found.known or self.baseline is not None:
-            n = len(self.measured.frequency)
-            return np.zeros((n, 0)), np.zeros(n)
-        columns = [found.mesh, *(column for column in (found.width, found.shear) if column.any())]
-        return np.stack(columns, axis=1), (0.5 * found.mesh) ** 2
+        """Return what mesh and theory leave off in ln f, column by column and mode by mode; a baseline took it out."""
+        known = None if self.baseline is not None else self.theory_error
+        return left_out(known, len(self.measured.frequency))
 
     def _accepted_variance(self) -> FloatArray:
         """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-].
@@ -367,11 +371,10 @@ class SpecimenProblem:
         """
         if not self.doubt_of_accepted:
             return np.zeros(len(self.measured.frequency))
-        kept = self.before_additions, self.predictor.additions[len(self.accepted) :]
-        without = self.predictor.for_test(self.measured, (*kept[0], *kept[1]))
-        plain = without.predict(at_least=self.reach)
+        kept = (*self.before_additions, *self.predictor.additions[len(self.accepted) :])
+        plain = self.predictor.for_test(self.measured, kept).predict(at_least=self.reach)
         hung = swinging(self.predictor.base.absorbers)
-        before = _undisturbed(self.nominal, plain, hung) if hung else plain.frequency[self._match(plain)]
+        before = undisturbed(self.nominal, plain, hung) if hung else plain.frequency[self._match(plain)]
         shift = np.log(self.nominal.frequency / before)
         return np.asarray((self.doubt_of_accepted * shift) ** 2)
 
@@ -379,18 +382,3 @@ class SpecimenProblem:
     def doubt_of_accepted(self) -> float:
         """Largest fidelity of the effects put into the model beforehand [-]."""
         return max((effect.fidelity_on(self.predictor) for effect in self.accepted), default=0.0)
-
-
-def _undisturbed(now: Prediction, plain: Prediction, absorbers: Sequence[Absorber]) -> FloatArray:
-    """Return from where absorbers moved each mode: the structure's most like it, or one of theirs, (n_modes,) [Hz].
-
-    Paired by modal overlap; what finds no mode of the structure is the mode of the absorber that swings nearest.
-    """
-    alike = now.overlap(plain)
-    # what no mode of the structure has of it is the absorbers'
-    theirs = np.repeat(1 - alike.sum(axis=1, keepdims=True), len(absorbers), axis=1)
-    columns = counterparts(-np.hstack([alike, theirs]))
-    alone = np.array([np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in absorbers])
-    nearest = alone[np.argmin(np.abs(np.log(now.frequency[:, None] / alone)), axis=1)]
-    known = np.append(plain.frequency, np.full(len(absorbers), np.nan))[columns]
-    return np.asarray(np.where(np.isnan(known), nearest, known))

@@ -46,9 +46,8 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
         named = ", ".join(own[:6]) + (", ..." if len(own) > 6 else "")
         beyond = " or ".join(unassigned(spec))
         raise StudyError(
-            f"[tolerances] {name}: neither {', '.join(regional)} of a region ({named}) nor "
-            f"{f'{beyond}, of what is in no region, nor ' if beyond else ''}among the parameters of [update]; correct "
-            "the name or leave it out"
+            f"[tolerances] {name}: unknown name; give {', '.join(regional)} of a region ({named}), "
+            f"{f'{beyond} (parts outside all regions), ' if beyond else ''}or a parameter of [update]"
         )
 
 
@@ -57,8 +56,8 @@ def _check_bounds(name: str, tolerances: Tolerances) -> None:
     low, high = tolerances.bounds.get(name, (1.0, 1.0))
     if not 0 < low <= 1 <= high:
         raise StudyError(
-            f"[tolerances] bounds of {name}: [{low:g}, {high:g}] leaves out where it starts, 1; it is a factor, where "
-            "1 leaves the model as it is"
+            f"[tolerances] bounds of {name}: [{low:g}, {high:g}] do not include 1, the factor of the unchanged model; "
+            "give bounds that do"
         )
 
 

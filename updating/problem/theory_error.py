@@ -49,6 +49,32 @@ class TheoryError:
         return self.mesh + self.theory
 
 
+def left_out(found: TheoryError | None, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return what mesh and theory leave off in ln f: columns common to all modes, variance mode by mode.
+
+    Nothing where nothing is known of it. Half of the mesh's own error is in doubt mode by mode, beside all of it in
+    common (judged).
+
+    Parameters
+    ----------
+    found : TheoryError, optional
+        What is known of mesh and theory.
+    count : int
+        How many modes there are.
+
+    Returns
+    -------
+    columns : (n_modes, k) array
+        Shifts of ln f by one standard deviation of each cause [-].
+    variance : (n_modes,) array
+        Of ln f [-].
+    """
+    if found is None or not found.known:
+        return np.zeros((count, 0)), np.zeros(count)
+    columns = [found.mesh, *(column for column in (found.width, found.shear) if column.any())]
+    return np.stack(columns, axis=1), (0.5 * found.mesh) ** 2
+
+
 def discrepancy(predictor: Predictor, order: IntArray, *, count: int | None = None) -> FloatArray:
     """Return by how much mesh and theory leave each mode's frequency off, (n_modes,) [-].
 

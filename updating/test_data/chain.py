@@ -52,12 +52,11 @@ class MeasurementChain:
 
 def measurement_chain(measured: Measured, state: State) -> MeasurementChain:
     """Return what a test reads under a state of its measurement."""
-    ends = {"seen": measured.seen.copy(), "hit": measured.hit.copy()}
-    for role, a, b in state.exchanged:
-        given = ends[role]
-        ends[role] = np.where(given == a, b, np.where(given == b, a, given))
     gain = np.full(len(measured.seen), level_of(state.gain, measured))
+    if not (state.exchanged or state.point_gains or state.moved):
+        return MeasurementChain(measured.points, measured.seen, measured.hit, gain)
     stated = {"seen": measured.seen, "hit": measured.hit}
+    ends = {role: relabelled(points, role, state) for role, points in stated.items()}
     for (role, point), factor in state.point_gains.items():
         gain[stated[role] == point] *= factor
     points = [measured.points]
@@ -66,6 +65,14 @@ def measurement_chain(measured: Measured, state: State) -> MeasurementChain:
         points.append((measured.points[point] + np.resize(np.asarray([*away, 0.0, 0.0]), 3)[:dim])[None, :])
         ends[role] = np.where(ends[role] == point, len(measured.points) + i, ends[role])
     return MeasurementChain(np.concatenate(points), ends["seen"], ends["hit"], gain)
+
+
+def relabelled(points: IntArray, end: str, state: State) -> IntArray:
+    """Return which points these really were at one end of the FRFs, where a state has labels exchanged."""
+    for role, a, b in state.exchanged:
+        if role == end:
+            points = np.where(points == a, b, np.where(points == b, a, points))
+    return points
 
 
 def level_of(gain: float, measured: Measured) -> float:

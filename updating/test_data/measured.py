@@ -165,7 +165,7 @@ class Measured(Displayed):
         """Points that carry a response transducer; empty where only shapes are known."""
         return tuple(sorted(set(self.seen.tolist()))) if self.absolute and not self.bare else ()
 
-    @property
+    @cached_property
     def bare(self) -> bool:
         """Whether the constants are components of shapes, joined to no point of force."""
         return bool((self.hit < 0).all())
@@ -182,7 +182,7 @@ class Measured(Displayed):
             return np.ones(constants.shape[1])
         return np.where(np.sum(self.constants * constants, axis=0) < 0, -1.0, 1.0)
 
-    @property
+    @cached_property
     def top(self) -> float:
         """Highest measured frequency, of modes with a partner in the model and of those without [Hz]."""
         alone = () if self.unpaired is None else self.unpaired.frequency

@@ -167,6 +167,11 @@ def matched(
                 moved[node] = max(moved.get(node, 0.0), found.distance)
             elif found.distance > 0.05 * found.spacing:
                 between[node] = max(between.get(node, 0.0), found.distance)
+    return taken, _beside_nodes(between, moved)
+
+
+def _beside_nodes(between: dict[int, float], moved: dict[int, float]) -> tuple[str, ...]:
+    """Return how many points lie between nodes, and were put on one, by their distance from it [m]."""
     warnings = []
     if between:
         worst = max(between, key=lambda n: between[n])
@@ -180,7 +185,7 @@ def matched(
             f"{len(moved)} test point(s) lie off the model and are put on its nearest nodes by match_tolerance: "
             f"point {worst} by {quantity(moved[worst], 'm')}"
         )
-    return taken, tuple(warnings)
+    return tuple(warnings)
 
 
 def _thousandfold(points: FloatArray, spec: Spec) -> str:

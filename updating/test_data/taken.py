@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from acquisition import Dof, ModalData
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition import ModalData
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.errors import StudyError
 from acquisition.form import FORMS
 from identification import ModalModel
@@ -14,7 +16,7 @@ from updating.models import Spec
 from updating.test_data.axes import Axes
 from updating.test_data.chain_phase import turn
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
-from updating.test_data.placement import Key, matched, place
+from updating.test_data.placement import Key, Placed, matched, place
 
 GUESSED_SHAPE_SIGMA = 0.02
 """Error of a shape of which none is stated, over its r.m.s. [-]: two transducers' calibrations. The diagnosis takes it
@@ -55,19 +57,8 @@ def measured_from_modes(
     """
     placed = place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
     points, beside = matched(placed.points, placed.keys, spec, match_tolerance)
-    rows = placed.rows
-    shapes = (
-        np.zeros((0, len(modes)))
-        if modes.shapes is None
-        else _straight(modes.shapes)[rows] * placed.signs[:, None]
-    )
-    absolute = modes.scaled and len(rows) > 0
-    guessed = modes.shape_sigma is None and shape_sigma is None
-    if modes.shape_sigma is not None and shape_sigma is None:
-        sigma = modes.shape_sigma[rows]
-    else:
-        part = GUESSED_SHAPE_SIGMA if shape_sigma is None else shape_sigma
-        sigma = part * np.sqrt(np.sum(shapes**2, axis=0) / max(len(shapes), 1)) * np.ones_like(shapes)
+    shapes = _shapes(modes, placed)
+    absolute = modes.scaled and len(placed.rows) > 0
     return Measured(
         modes.frequency,
         np.where(np.isfinite(modes.frequency_sigma), modes.frequency_sigma, 0.0),
@@ -76,9 +67,9 @@ def measured_from_modes(
         points,
         tuple(node for node, _ in placed.keys),
         placed.index,
-        np.full(len(rows), -1),
+        np.full(len(placed.rows), -1),
         shapes,
-        sigma,
+        _shape_sigma(modes, placed, shapes, shape_sigma),
         absolute=absolute,
         repeated=False,
         warnings=(
@@ -89,9 +80,25 @@ def measured_from_modes(
             *(_with_level(float(options.get("calibration", Measured.calibration))) if absolute else ()),
         ),
         directions=_directions(placed.keys, spec),
-        guessed=guessed,
+        guessed=modes.shape_sigma is None and shape_sigma is None,
         **options,  # type: ignore[arg-type]
     )
+
+
+def _shapes(modes: ModalData, placed: Placed) -> FloatArray:
+    """Return the shapes where the model can follow, along the points' directions, (n_rows, n_modes)."""
+    if modes.shapes is None:
+        return np.zeros((0, len(modes)))
+    return np.asarray(_straight(modes.shapes)[placed.rows] * placed.signs[:, None])
+
+
+def _shape_sigma(modes: ModalData, placed: Placed, shapes: FloatArray, stated: float | None) -> FloatArray:
+    """Return standard deviations of shapes (n_rows, n_modes): as stated, of the modes, or guessed, in that order."""
+    if modes.shape_sigma is not None and stated is None:
+        return np.asarray(modes.shape_sigma[placed.rows])
+    part = GUESSED_SHAPE_SIGMA if stated is None else stated
+    rms = np.sqrt(np.sum(shapes**2, axis=0) / max(len(shapes), 1))
+    return np.asarray(part * rms * np.ones_like(shapes))
 
 
 def _straight(shapes: ComplexArray) -> FloatArray:
@@ -145,72 +152,114 @@ def measured_from_identified(
     axes, spec, match_tolerance, **options
         As in :func:`measured_from_modes`.
     """
-    geometry = model.modal.geometry
-    responses = place(model.responses, geometry, axes, spec)
-    references = place(model.references, geometry, axes, spec)
-    both = np.intersect1d(responses.rows, references.rows)
-    if len(both) == 0:
-        raise StudyError(
-            f"{options.get('title', 'test')}: no FRF is measured and hit along the model's z; check axes in [test]"
-        )
-    at_response = {row: i for i, row in enumerate(responses.rows.tolist())}
-    at_reference = {row: i for i, row in enumerate(references.rows.tolist())}
-    left = np.array([at_response[row] for row in both.tolist()])
-    right = np.array([at_reference[row] for row in both.tolist()])
-    keys = tuple(dict.fromkeys(responses.keys + references.keys))
-    where = {key: i for i, key in enumerate(keys)}
-    points = np.stack([(responses if k in responses.keys else references).point(k) for k in keys])
-    points, beside = matched(points, keys, spec, match_tolerance)
-    seen, hit = responses.index[left], references.index[right]
-    signs = responses.signs[left] * references.signs[right]
-    constants = turn(model.constants[both] * signs[:, None], model.constant_sigma[both], seen, hit)
-    recorded = model.frfs.record or model.frfs
+    ends = _both_ends(model, axes, spec, str(options.get("title", "test")), match_tolerance)
+    rows, signs = ends.rows, ends.signs[:, None]
+    constants = turn(model.constants[rows] * signs, model.constant_sigma[rows], *ends.transducers)
+    shared = model.constant_shared[rows]
+    trend, recorded = model.trend, model.frfs.record or model.frfs
     return Measured(
         model.modal.frequency,
         model.modal.frequency_sigma,
         _column(model.modal.damping, len(model.modal)),
         _column(model.modal.damping_sigma, len(model.modal)),
-        points,
-        tuple(node for node, _ in keys),
-        np.array([where[responses.keys[i]] for i in seen.tolist()]),
-        np.array([where[references.keys[i]] for i in hit.tolist()]),
+        ends.points,
+        tuple(node for node, _ in ends.keys),
+        ends.seen,
+        ends.hit,
         constants.real,
-        constants.widened(model.constant_sigma[both]),
+        constants.widened(model.constant_sigma[rows]),
         absolute=True,
         repeated=model.frfs.variance is not None,
-        warnings=tuple(dict.fromkeys(responses.warnings + references.warnings + beside)),
-        rows=both,
-        signs=signs,
-        directions=_directions(keys, spec),
-        written=_written(
-            (
-                *(where[references.keys[i]] for i in hit.tolist()),
-                *(where[responses.keys[i]] for i in seen.tolist()),
-            ),
-            (*(model.references[i] for i in both.tolist()), *(model.responses[i] for i in both.tolist())),
-        ),
-        noise=constants.widened(
-            model.constant_noise[both],
-            _across(constants.real * signs[:, None], model.constant_shared[both]),
-        ),
-        shared=model.constant_shared[both] * signs[:, None, None],
-        hit_errors=None if model.hit_errors is None else model.hit_errors.rows(both),
+        warnings=ends.warnings,
+        rows=rows,
+        signs=ends.signs,
+        directions=_directions(ends.keys, spec),
+        written=_written(model, ends),
+        noise=constants.widened(model.constant_noise[rows], _across(constants.real * signs, shared)),
+        shared=shared * signs[..., None],
+        hit_errors=None if model.hit_errors is None else model.hit_errors.rows(rows),
         quadrature=np.mean(constants.imaginary**2, axis=0),
         phase=constants.phase,
         phase_sigma=constants.phase_sigma,
         channel_group=constants.channel_group,
-        trend=None if model.trend is None else model.trend.value,
-        trend_sigma=None if model.trend is None else model.trend.sigma,
-        common_trend_sigma=0.0 if model.trend is None else model.trend.common_sigma,
+        trend=None if trend is None else trend.value,
+        trend_sigma=None if trend is None else trend.sigma,
+        common_trend_sigma=0.0 if trend is None else trend.common_sigma,
         fading=model.fading,
         recorded_power=FORMS.index(recorded.form),
         **options,  # type: ignore[arg-type]
     )
 
 
-def _written(points: tuple[int, ...], dofs: tuple[Dof, ...]) -> tuple[str, ...]:
-    """Return every point as the test writes the last of its degrees of freedom."""
-    last = dict(zip(points, dofs, strict=True))
+@dataclass(frozen=True, eq=False)
+class _Ends:
+    """The FRFs whose both ends the model can follow.
+
+    Parameters
+    ----------
+    rows : (n,) int array
+        Which FRFs.
+    keys : tuple of (node, direction)
+        What their points are, those of the responses first.
+    points : (n_points, dim) array
+        Where these are in model axes [m].
+    seen, hit : (n,) int arrays
+        Point of the response and of the force.
+    transducers : two (n,) int arrays
+        The same among the points of the responses, and among those of the forces.
+    signs : (n,) array
+        Sign by which each FRF points along the model's axes [-].
+    warnings : tuple of str
+        What was left out, and which points were moved.
+    """
+
+    rows: IntArray
+    keys: tuple[Key, ...]
+    points: FloatArray
+    seen: IntArray
+    hit: IntArray
+    transducers: tuple[IntArray, IntArray]
+    signs: FloatArray
+    warnings: tuple[str, ...]
+
+
+def _both_ends(model: ModalModel, axes: Axes, spec: Spec, title: str, match_tolerance: float | None) -> _Ends:
+    """Put the responses and references of an identified model on the model of the structure.
+
+    Raises
+    ------
+    StudyError
+        If no FRF has both ends where the model can follow, or a point lies off it.
+    """
+    geometry = model.modal.geometry
+    responses = place(model.responses, geometry, axes, spec)
+    references = place(model.references, geometry, axes, spec)
+    rows = np.intersect1d(responses.rows, references.rows)
+    if len(rows) == 0:
+        raise StudyError(f"{title}: no FRF is measured and hit along the model's z; check axes in [test]")
+    left, right = np.searchsorted(responses.rows, rows), np.searchsorted(references.rows, rows)
+    keys = tuple(dict.fromkeys(responses.keys + references.keys))
+    where = {key: i for i, key in enumerate(keys)}
+    points = np.stack([(responses if k in responses.keys else references).point(k) for k in keys])
+    points, beside = matched(points, keys, spec, match_tolerance)
+    seen, hit = responses.index[left], references.index[right]
+    return _Ends(
+        rows=rows,
+        keys=keys,
+        points=points,
+        seen=np.array([where[responses.keys[i]] for i in seen.tolist()]),
+        hit=np.array([where[references.keys[i]] for i in hit.tolist()]),
+        transducers=(seen, hit),
+        signs=responses.signs[left] * references.signs[right],
+        warnings=tuple(dict.fromkeys(responses.warnings + references.warnings + beside)),
+    )
+
+
+def _written(model: ModalModel, ends: _Ends) -> tuple[str, ...]:
+    """Return every point as the test writes the last of its degrees of freedom, a response before a force."""
+    rows = ends.rows.tolist()
+    dofs = [*(model.references[i] for i in rows), *(model.responses[i] for i in rows)]
+    last = dict(zip([*ends.hit.tolist(), *ends.seen.tolist()], dofs, strict=True))
     return tuple(str(last[point]) for point in range(len(last)))
 
 

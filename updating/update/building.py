@@ -21,7 +21,8 @@ from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
 from updating.update.parameters.affine import eligible
 from updating.update.parameters.basis import extended, update_basis
-from updating.update.parameters.parameters import ModelParameter, ParameterSet, build_parameter_set
+from updating.update.parameters.named import build_parameter_set
+from updating.update.parameters.parameters import ModelParameter, ParameterSet
 
 BEYOND = ("shapes", "constants")
 """What can be data beside the frequencies."""
@@ -54,6 +55,26 @@ def build_specimen(
     predictor = predictor_of(case)
     accepted = {name: dict(values) for name, values in case.accepted}
     parameter_set = build_parameter_set(parameters, predictor, case.tolerances, accepted)
+    _check_data(parameter_set, lean=lean)
+    predictor = _on_own_basis(predictor, parameter_set) if lean else predictor
+    paired = pair_modes(case.measured, predictor.predict())
+    number = 1 + paired.rows
+    predictor = _without_updated(case, parameter_set, predictor)
+    model = UpdatedModel(predictor.for_test(paired.measured), parameter_set)
+    return Specimen(
+        title=case.title,
+        model=model,
+        nominal=Nominal(model, paired.measured, paired.order, level),
+        measured=paired.measured,
+        number=number,
+        order=paired.order,
+        warnings=(*case.measured.warnings, *paired.warnings),
+        correction=np.ones(len(number)),
+    )
+
+
+def _check_data(parameter_set: ParameterSet, *, lean: bool) -> None:
+    """Refuse parameters on which the data do not depend."""
     dampers = [
         model_parameter.name
         for model_parameter in parameter_set.model_parameters
@@ -70,9 +91,10 @@ def build_specimen(
             f"update: {numbers[0]} is a number of a deck, which only frequencies and shapes update; use "
             'method = "eigenvalue"'
         )
-    predictor = _on_own_basis(predictor, parameter_set) if lean else predictor
-    paired = pair_modes(case.measured, predictor.predict())
-    number = 1 + paired.rows
+
+
+def _without_updated(case: Case, parameter_set: ParameterSet, predictor: Predictor) -> Predictor:
+    """Return the predictor without those of the accepted effects that are updated, on a basis of its own."""
     updated = {model_parameter.effect for model_parameter in parameter_set.model_parameters}
     names = [name for name, _ in case.accepted]
     if twice := sorted(name for name in updated if names.count(name) > 1):
@@ -80,20 +102,10 @@ def build_specimen(
             f"update: {twice[0]} stands {names.count(twice[0])} times in [[model.effect]], and it is not "
             "clear which is meant; keep one"
         )
-    if updated & set(accepted):
-        kept = tuple((n, v) for n, v in case.accepted if n not in updated)
-        predictor = predictor_of(replace(case, accepted=kept))
-    model = UpdatedModel(predictor.for_test(paired.measured), parameter_set)
-    return Specimen(
-        title=case.title,
-        model=model,
-        nominal=Nominal(model, paired.measured, paired.order, level),
-        measured=paired.measured,
-        number=number,
-        order=paired.order,
-        warnings=(*case.measured.warnings, *paired.warnings),
-        correction=np.ones(len(number)),
-    )
+    if not updated & set(names):
+        return predictor
+    kept = tuple((n, v) for n, v in case.accepted if n not in updated)
+    return predictor_of(replace(case, accepted=kept))
 
 
 def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predictor:

@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray
 from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
+from updating.steps import SILENT, Steps
 from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
 from updating.update.intervals import check_draws, with_intervals
@@ -72,6 +73,7 @@ def bootstrap(
     quantity: Quantity | None = None,
     regularise: bool | None = None,
     data: Sequence[str] = ("frequencies",),
+    steps: Steps = SILENT,
 ) -> Bootstrap:
     """Update, then update again many times from data drawn anew.
 
@@ -97,6 +99,8 @@ def bootstrap(
         Number of draws [-].
     frequencies : sequence of (n, n_measured) arrays or None, optional
         For each case, redrawn frequencies of all its measured modes, None to draw from the covariance [Hz].
+    steps : Steps
+        Where it is announced how many draws are updated.
 
     Raises
     ------
@@ -113,11 +117,13 @@ def bootstrap(
         regularise=regularise,
         data=data,
     )
-    draws = _repeat(fitted, rng, n, frequencies or [None] * len(fitted.system.specimens))
+    draws = _repeat(fitted, rng, n, frequencies or [None] * len(fitted.system.specimens), steps)
     return Bootstrap(_reported(report(fitted), fitted.system, draws), draws)
 
 
-def _repeat(fitted: Fitted, rng: np.random.Generator, n: int, given: Sequence[FloatArray | None]) -> Draws:
+def _repeat(
+    fitted: Fitted, rng: np.random.Generator, n: int, given: Sequence[FloatArray | None], steps: Steps
+) -> Draws:
     system, theta = fitted.system.around(fitted.solution.theta), fitted.solution.theta
     system.evaluations(theta)  # what all draws share is worked out before the first
     if len(given) != len(system.specimens):
@@ -129,7 +135,7 @@ def _repeat(fitted: Fitted, rng: np.random.Generator, n: int, given: Sequence[Fl
     spread = np.where(system.prior > 0, 1 / np.sqrt(np.maximum(system.prior, 1e-300)), 0.0)
     centre = system.start + spread * rng.standard_normal((n, len(theta)))
     coordinates, rested = np.empty((n, len(theta))), 0
-    for i in range(n):
+    for i in steps.each(range(n)):
         constants = [_redrawn_shapes(s, rng) for s in system.specimens] if system.shapes else None
         solution = solve(system.redrawn([f[i] for f in frequency], centre[i], constants), theta)
         coordinates[i] = solution.theta

@@ -337,7 +337,7 @@ def _on_shapes(system: System, *, contradicted: bool) -> Iterator[str]:
         yield (
             f"{specimen.title}: {stated}: their error is taken as {percent(100 * middle)} of their r.m.s., "
             f"that of test mode {specimen.number[worst]} as {percent(100 * size[worst])}"
-            + (", by which they pull the frequencies no further off than these admit" if contradicted else "")
+            + (", so large that the shapes do not contradict the frequencies" if contradicted else "")
         )
 
 
@@ -348,38 +348,45 @@ def _at_bounds(system: System, solution: Solution) -> Iterator[str]:
     ]
     if stopped:
         yield (
-            f"{', '.join(stopped)} ended at a bound, not where data and tolerances are met best: sigmas are those "
-            "without the bound, and the others make up for it; widen the bounds, or look for what is wrong"
+            f"{', '.join(stopped)} ended at a bound, not at the best fit: standard deviations ignore the bound, "
+            "and the other parameters compensate for it; widen the bounds, or find what is wrong with the model"
         )
 
 
 def _warnings(fitted: Fitted, statistics: Statistics, kept: tuple[Held, ...]) -> list[str]:
-    system, solution, disagreement = fitted.system, fitted.solution, fitted.disagreement
-    found = [*doubts(system, solution, statistics.dof), *(w for s in system.specimens for w in s.warnings)]
-    found += _on_shapes(system, contradicted=fitted.contradicted)
+    """Return the warnings, those that make the parameters doubtful first."""
+    system, solution = fitted.system, fitted.solution
+    found = []
     if not solution.converged:
-        found.append(f"the parameters still move after {solution.iterations} iterations")
-    if statistics.inflation > 1:
-        found.append(
-            f"the updated model misses the frequencies by {statistics.inflation:.1f} times what the measurement "
-            "explains; the standard deviations are raised by that factor"
-        )
-    found += [*sentences(system, kept), *_at_bounds(system, solution)]
+        found.append(f"not converged: the parameters still change after {solution.iterations} iterations")
+    found += _at_bounds(system, solution)
     if statistics.strain > 1:
         away = (solution.theta - system.start) * np.sqrt(system.prior)
         worst = int(np.argmax(np.abs(away)))
         found.append(
             f"{system.names[worst]} ends {abs(away[worst]):.0f} tolerances from its nominal value: data and tolerances "
-            f"contradict each other; what rests on tolerances is raised by {statistics.strain:.1f}"
+            f"contradict each other; standard deviations from tolerances are raised by {statistics.strain:.1f}"
         )
-    if disagreement is None:
+    if statistics.inflation > 1:
         found.append(
+            f"the updated model misses the frequencies by {statistics.inflation:.1f} times what the measurement "
+            "explains; the standard deviations are raised by that factor"
+        )
+    found += [*sentences(system, kept), *doubts(system, solution, statistics.dof), *_on_reduction(fitted)]
+    found += (w for s in system.specimens for w in s.warnings)
+    return [*found, *_on_shapes(system, contradicted=fitted.contradicted)]
+
+
+def _on_reduction(fitted: Fitted) -> Iterator[str]:
+    """State where the frequencies after the update are not those of the full model."""
+    disagreement = fitted.disagreement
+    if disagreement is None:
+        yield (
             "an effect exists only in the reduced model: the frequencies after the update are those of "
             "the reduced model"
         )
     elif disagreement >= AGREED:
-        found.append(
+        yield (
             f"reduced and full model still differ by {percent(100 * disagreement)} in a frequency: the update is "
-            "right to about that; refine the mesh, or narrow the range of what moves nodes"
+            "accurate to about that; refine the mesh, or narrow the range of what moves nodes"
         )
-    return found

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.fft
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.hits.hammer import Hits
 
 OUTLIER = 0.05  # of the response's energy that the other hits do not explain
@@ -54,9 +54,7 @@ def unexplained(hits: Hits, good: Sequence[int], band: float) -> FloatArray:
     band : float
         Upper end of the lines used, relative to the sampling rate [-].
     """
-    lines = slice(1, max(3, int(band * hits.force.shape[-1])))
-    force = scipy.fft.rfft(hits.force[list(good)], axis=-1)[:, lines]
-    motion = scipy.fft.rfft(hits.motion[list(good)], axis=-1)[..., lines]
+    force, motion = _spectra(hits, good, band)
     cross, power = motion * force.conj()[:, None], np.abs(force) ** 2
     rest = np.maximum(power.sum(axis=0) - power, np.finfo(float).tiny)
     predicted = (cross.sum(axis=0) - cross) / rest[:, None] * force[:, None]
@@ -77,12 +75,18 @@ def agreement(hits: Hits, good: Sequence[int], band: float) -> float:
     band : float
         Upper end of the lines used, relative to the sampling rate [-].
     """
-    lines = slice(1, max(3, int(band * hits.force.shape[-1])))
-    force = scipy.fft.rfft(hits.force[list(good)], axis=-1)[:, lines]
-    motion = scipy.fft.rfft(hits.motion[list(good)], axis=-1)[..., lines]
+    force, motion = _spectra(hits, good, band)
     cross = np.abs((motion * force.conj()[:, None]).sum(axis=0)) ** 2
     power = (np.abs(motion) ** 2).sum(axis=0) * (np.abs(force) ** 2).sum(axis=0)
     alive = np.ptp(hits.motion[list(good)], axis=-1).min(axis=0) > 0
     if not alive.any():
         return 1.0
     return float(np.mean(cross[alive] / np.maximum(power[alive], np.finfo(float).tiny)))
+
+
+def _spectra(hits: Hits, good: Sequence[int], band: float) -> tuple[ComplexArray, ComplexArray]:
+    """Return the spectra of force (n, n_lines) and motion (n, n_responses, n_lines) of some hits up to a band."""
+    lines = slice(1, max(3, int(band * hits.force.shape[-1])))
+    force = scipy.fft.rfft(hits.force[list(good)], axis=-1)[:, lines]
+    motion = scipy.fft.rfft(hits.motion[list(good)], axis=-1)[..., lines]
+    return force, motion

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from acquisition.archives import allowed
 from acquisition.arrays import AnyArray
-from acquisition.errors import InputError
+from acquisition.errors import InputError, cannot_open
 from acquisition.recorders.matlab.elements import (
     COMPRESSED,
     DEEP,
@@ -102,8 +102,7 @@ def _bytes(path: Path) -> Bytes:
     try:
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot be opened ({reason}); check the path") from None
+        raise cannot_open(path, error) from None
     if raw[:10] == b"MATLAB 7.3" or raw[512:520] == HDF or raw[:8] == HDF:
         raise InputError(
             f"{path}: a MATLAB file of version 7.3 (HDF5), which is not read; save it with save(..., '-v7')"

@@ -11,7 +11,7 @@ from io import FileIO
 from pathlib import Path
 from typing import IO, Any
 
-from acquisition.errors import InputError
+from acquisition.errors import InputError, cannot_open
 
 _WINDOW = 1 << 20
 _KEPT = 1 << 24  # bytes read before their pages are given back
@@ -71,8 +71,7 @@ def opened(path: Path) -> Iterator[Source]:
     try:
         file: IO[bytes] | FileIO = path.open("rb", buffering=0)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot be opened ({reason}); check the path") from None
+        raise cannot_open(path, error) from None
     with file:
         translated, note = _translated(file, path)
         with translated:

@@ -197,19 +197,38 @@ def forms(real: FloatArray, half: FloatArray) -> FloatArray:
     return result
 
 
+def scaled_eigen(gram: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return lengths of columns (n, k), and eigenvalues (n, k) and vectors (n, k, k) of products of unit columns.
+
+    Parameters
+    ----------
+    gram : (n, k, k) array
+        Products of the columns.
+    """
+    length, unit = _unit_columns(gram)
+    values, vectors = np.linalg.eigh(unit)
+    return length, values, vectors
+
+
 def solve(gram: FloatArray, right: FloatArray) -> FloatArray:
     """Solve stacked normal equations, (n or 1, k, k) by (n, k, m), with columns of unit length.
 
     Columns that are the same to rounding, as those of two poles that fell together, share their unknown.
     """
-    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
-    unit = gram / (length[:, :, None] * length[:, None, :])
+    length, unit = _unit_columns(gram)
     scaled = right / length[:, :, None]
     try:
         solved = _solve_unit(unit, scaled, _RIDGE)
     except np.linalg.LinAlgError:
         solved = _solve_unit(unit, scaled, _SINGULAR)
     return np.asarray(solved / length[:, :, None])
+
+
+def _unit_columns(gram: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the lengths of columns (n, k), and their products (n, k, k) as if all had the length 1."""
+    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
+    unit = gram / (length[:, :, None] * length[:, None, :])
+    return length, unit
 
 
 def _solve_unit(unit: FloatArray, right: FloatArray, ridge: float) -> FloatArray:

@@ -223,8 +223,7 @@ def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 def _inverse_diagonal(gram: FloatArray) -> FloatArray:
     """Return the diagonal of each inverse; directions the data do not see count as seen to rounding."""
-    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(gram / (length[:, :, None] * length[:, None, :]))
+    length, values, vectors = normal_equations.scaled_eigen(gram)
     floor = np.finfo(float).eps * gram.shape[-1]
     inverse = np.einsum("jkm,jm->jk", vectors**2, 1.0 / np.maximum(values, floor))
     return np.asarray(inverse / length**2)

@@ -78,8 +78,7 @@ def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
     real = np.concatenate([columns.real, columns.imag])
     real = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
     gram = normal_equations.products(real, weights.lines)
-    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(gram / (length[:, :, None] * length[:, None, :]))
+    length, values, vectors = normal_equations.scaled_eigen(gram)
     seen = values > 1e-13 * values[:, -1:]
     root = np.where(seen, 1.0 / np.sqrt(np.where(seen, values, 1.0)), 0.0)
     return 0.5 * weights.lines * normal_equations.forms(real, vectors * root[:, None, :] / length[:, :, None])

@@ -1,5 +1,6 @@
 // Charts in the colours of the page; plotly is loaded when the first is drawn.
 
+import { cursors } from "./cursors.js";
 import { colour } from "./dom.js";
 
 export { colour };
@@ -62,7 +63,7 @@ function branch(traces) {
 }
 
 /** Draw FRFs: magnitude, and beneath it on the same frequencies phase and coherence where they are given. */
-export function drawFrf(element, { magnitude, phase = [], coherence = [], unit, height = 300, shapes = [], ...more }) {
+export async function drawFrf(element, { magnitude, phase = [], coherence = [], unit, height = 300, shapes = [], ...more }) {
   const narrow = window.innerWidth < 600;
   const turned = branch(phase);
   const below = [
@@ -82,7 +83,8 @@ export function drawFrf(element, { magnitude, phase = [], coherence = [], unit, 
     }),
   }));
   const x = magnitude[0].x;
-  return draw(element, [...magnitude, ...rows.flatMap((r) => r.traces)], {
+  const [marks, attach] = cursors(element, magnitude, unit);
+  await draw(element, [...magnitude, ...rows.flatMap((r) => r.traces)], {
     height: whole + 60,
     margin: { l: narrow ? 54 : 66, r: 14, t: 10, b: 40 },
     xaxis: axis("frequency [Hz]", { range: [x[0], x[x.length - 1]], anchor: below.length ? `y${below.length + 1}` : "y" }),
@@ -92,10 +94,12 @@ export function drawFrf(element, { magnitude, phase = [], coherence = [], unit, 
       automargin: false,
     },
     ...Object.fromEntries(rows.map((r) => [r.key, r.axis])),
-    shapes: shapes.map((one) => ({ ...one, yref: "paper", y0: 0, y1: 1 })),
+    hovermode: "x",
+    shapes: [...shapes.map((one) => ({ ...one, yref: "paper", y0: 0, y1: 1 })), ...marks],
     uirevision: `${x[0]} ${x[x.length - 1]}`, // the part looked at stays, as long as the lines do
     ...more,
   });
+  await onclick(element, (point) => attach(point.x));
 }
 
 function layout(given) {
@@ -158,13 +162,11 @@ function without(object, key) {
   return rest;
 }
 
-/** Return an axis of numbered modes, written upright; where many stand on a narrow page, every second. */
+/** Return an axis of numbered modes, written upright; where many stand close together, every second or third. */
 export function modesAxis(title, count, more = {}) {
-  const dtick = window.innerWidth < 600 && count > CLOSE ? 2 : 1;
+  const dtick = Math.ceil(count / (window.innerWidth < 600 ? 12 : 16)); // numbers of two digits that have room
   return axis(title, { type: "category", tickangle: 0, tick0: 0, dtick, ...more });
 }
-
-const CLOSE = 12; // numbers of two digits that stand beside each other on a phone
 
 /** Return the trace of a matrix of MACs. */
 export function macMatrix(matrix, rows, columns) {
@@ -182,6 +184,8 @@ export function macMatrix(matrix, rows, columns) {
       [1, colour("blue")],
     ],
     colorbar: { title: { text: "MAC" }, thickness: 10, outlinewidth: 0 },
+    texttemplate: columns.length <= (window.innerWidth < 600 ? 8 : 16) ? "%{z:.2f}" : "",
+    textfont: { size: 10 },
     hovertemplate: "%{y} with %{x}: MAC %{z:.3f}<extra></extra>",
   };
 }

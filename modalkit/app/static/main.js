@@ -4,6 +4,7 @@ import { get, post } from "./api.js";
 import { button, fill, h } from "./dom.js";
 import * as diagnosis from "./pages/diagnosis.js";
 import * as hits from "./pages/hits.js";
+import * as importing from "./pages/import.js";
 import * as model from "./pages/model.js";
 import * as modes from "./pages/modes.js";
 import * as shapes from "./pages/shapes.js";
@@ -34,6 +35,7 @@ const app = {
   },
   async working(text, work) {
     notice(text, "busy");
+    const watch = setInterval(watched, WATCH);
     try {
       const found = await counted(work());
       if (byId("notice").className === "busy") notice("");
@@ -41,13 +43,37 @@ const app = {
     } catch (error) {
       notice(error.message, "error");
       throw error;
+    } finally {
+      clearInterval(watch);
     }
+  },
+  /** Go on with the study that an import has written. */
+  opened(state) {
+    app.state = state;
+    if (location.hash === "#hits") app.quiet(show());
+    else location.hash = "hits"; // which shows the page
   },
   notice,
   quiet(promise) {
     counted(promise).catch(() => {});
   },
 };
+
+const WATCH = 1000; // milliseconds between questions for what is computed
+
+/** State what is computed, for how long, and how long it will take by the last time; it can be stopped. */
+async function watched() {
+  const doing = await get("doing").catch(() => null);
+  if (!doing?.what || byId("notice").className !== "busy") return;
+  const left = doing.remaining_s > 1 ? `, about ${doing.remaining_s.toFixed(0)} s left` : "";
+  notice(
+    [
+      `${doing.what}, ${doing.seconds.toFixed(0)} s${left} `,
+      button("Stop", () => post("interrupt"), { id: "interrupt", class: "small danger" }),
+    ],
+    "busy",
+  );
+}
 
 let pending = 0;
 
@@ -101,6 +127,12 @@ function head() {
   document.title = `${state.title} – modalkit`;
   fill(byId("title"), state.title);
   fill(byId("file"), state.file);
+  const theme = button(dark() ? "Light" : "Dark", turned, { id: "theme", title: "light or dark" });
+  if (state.importing) {
+    fill(byId("tools"), theme);
+    fill(byId("tabs"));
+    return;
+  }
   fill(
     byId("tools"),
     button("↶ Undo", () => app.change("undo"), {
@@ -117,7 +149,7 @@ function head() {
       id: "export",
       title: "study, UFF, JSON, CSV and report into a folder beside the study",
     }),
-    button(dark() ? "Light" : "Dark", turned, { id: "theme", title: "light or dark" }),
+    theme,
   );
   fill(
     byId("tabs"),
@@ -138,7 +170,11 @@ function head() {
 async function exported() {
   try {
     const found = await app.working("writing", () => post("export"));
-    notice(`written to ${found.folder}: ${found.files.join(", ")}`, "done");
+    const missing = found.missing.map(
+      ({ kind, change }) =>
+        ` NOT in it: the result of ${kind}, which belongs to the study before "${change}"; run ${kind} again, or undo.`,
+    );
+    notice(`written to ${found.folder}: ${found.files.join(", ")}.${missing.join("")}`, missing.length ? "warn" : "done");
   } catch {
     /* said already */
   }
@@ -172,7 +208,8 @@ function turned() {
 /** Show the page that the address names; the same page is only brought up to date. */
 async function show() {
   const named = location.hash.slice(1);
-  const name = named in PAGES ? named : app.state.has_files ? "hits" : "modes";
+  const usual = named in PAGES ? named : app.state.has_files ? "hits" : "modes";
+  const name = app.state.importing ? "import" : usual;
   if (name !== app.page) {
     app.shown?.close?.();
     app.page = name;
@@ -181,7 +218,7 @@ async function show() {
     root.replaceChildren();
     const inner = h("div", { class: `page-${name}` });
     root.append(inner);
-    app.shown = PAGES[name][1].open(inner, app);
+    app.shown = (app.state.importing ? importing : PAGES[name][1]).open(inner, app);
   }
   const here = app.shown;
   try {

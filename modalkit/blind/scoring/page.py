@@ -10,7 +10,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from modalkit.blind.scoring import abstention, calibration, closing, open_set, places, rates, severity
+from modalkit.blind.scoring import (
+    abstention,
+    calibration,
+    closing,
+    levels,
+    open_set,
+    places,
+    rates,
+    severity,
+)
 from modalkit.blind.scoring.score import Score
 from modalkit.blind.scoring.table import ALL, Rate
 from modalkit.blind.scoring.wording import count_text, part_text, percent, share_text, value_text
@@ -262,6 +271,24 @@ def _channels(score: Score) -> Section:
     return Section("The channel", "visible effects of the library", _shares("channel", rows))
 
 
+def _levels(score: Score) -> Section:
+    columns = {
+        "leading mechanism right": (levels.LEADING, share_text),
+        "count": (levels.LEADING, count_text),
+        "mechanism certain, right": (levels.CERTAIN, _count),
+        "wrong": (levels.WRONG, _count),
+        "story certain, right": (levels.STORY, _count),
+        "wrong story": (levels.WRONG_STORY, _count),
+    }
+    note = (
+        "effects that the data show; a mechanism is right in channel and, where the effect has one, place: within 5 % "
+        "of the span or inside its interval"
+    )
+    return Section(
+        "Mechanism and story", note, _grid(score, "trials", _groups(score, levels.LEADING), columns)
+    )
+
+
 def _closing(score: Score) -> Section:
     columns = {
         "|stated - true| [points of %]": (closing.MISSED, value_text),
@@ -308,6 +335,7 @@ _MAKERS: tuple[Callable[[Score], Section], ...] = (
     _places,
     _points,
     _channels,
+    _levels,
     _closing,
     _silence,
     _every,

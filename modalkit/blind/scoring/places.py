@@ -58,6 +58,16 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
 }
 _CHANNEL = {effect: channel for channel, effects in _CHANNELS.items() for effect in effects}
 
+_OUTSIDE: Mapping[str, tuple[str, ...]] = {
+    **dict.fromkeys(("tip_spring", "cable", "breathing_crack", "loose_end"), ("stiffness",)),
+    **dict.fromkeys(("initial_curvature", "thermal_prestress", "cavity", "skew_clamp"), ("stiffness",)),
+    **dict.fromkeys(("rib", "step", "taper"), ("stiffness", "mass")),
+    "dashpot": ("damping",),
+    "density_gradient": ("mass",),
+    **dict.fromkeys(("oblique_hits", "cross_axis"), ("measurement",)),
+}
+"""Channels of what the rig has under names of its own, and of what acts in two."""
+
 _COLUMNS = ["trial", "effect", "sort", "nearest", "first", "places", "covered", "held"]
 
 
@@ -168,3 +178,9 @@ def channel_rates(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> Iterator
 def channels(truth: Truth) -> set[str]:
     """Return the channels that are right: those of every accepted answer."""
     return {_CHANNEL[name] for names in truth.accepted for name in names if name in _CHANNEL}
+
+
+def true_channels(truth: Truth) -> set[str]:
+    """Return the channels in which what is hidden acts, those of every accepted answer among them."""
+    own = {channel for name in truth.effects for channel in _OUTSIDE.get(name, ())}
+    return channels(truth) | own | {_CHANNEL[name] for name in truth.effects if name in _CHANNEL}

@@ -18,6 +18,7 @@ from modalkit.blind.scoring import abstention as waiting
 from modalkit.blind.scoring.calibration import calibration, cover, uniformity
 from modalkit.blind.scoring.closing import closing, closing_table
 from modalkit.blind.scoring.document import nested, outcome_documents, table_rows
+from modalkit.blind.scoring.levels import level_rates
 from modalkit.blind.scoring.open_set import open_set
 from modalkit.blind.scoring.places import channel_rates, place_errors, place_table
 from modalkit.blind.scoring.rates import rates, rates_by_effect, rates_by_group
@@ -110,6 +111,7 @@ def score(result: BlindResult) -> Score:
         yield from rates_by_group(trials)
         yield from rates_by_effect(trials)
         yield from channel_rates(outcomes, trials)
+        yield from level_rates(outcomes, trials)
         yield from waiting.abstention(trials, waiting.KNOWN, rng)
         yield from waiting.abstention(trials, waiting.BOTH, rng)
         yield from calibration(trials, rng)

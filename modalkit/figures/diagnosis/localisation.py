@@ -31,6 +31,7 @@ from modalkit.figures.style import (
     text_width,
 )
 from modalkit.output.location import localisation_title
+from modalkit.output.names import zone_in_words
 from modalkit.views.outline import outline
 from updating import Case, Diagnosis
 from updating.diagnosis.answer.contributions import columns_of
@@ -154,12 +155,12 @@ def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
         return
     alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < ALIKE
     zones = sorted(diagnosis.where.zones, key=lambda z: 0.0 if alike else -z.probability)
-    longest = max((text_width(zone.name, SMALL) for zone in zones[:LISTED]), default=0.0) / 72
+    longest = max((text_width(zone_in_words(zone.name), SMALL) for zone in zones[:LISTED]), default=0.0) / 72
     left, right = min(max(1.1, longest + 0.2), 1.9), 0.75
     full = RIGHT - left - right
     for i, zone in enumerate(zones[:LISTED]):
         y = -(i + 0.5) * height / (LISTED + 1)
-        name = shortened(zone.name, 72 * (left - 0.15), SMALL)
+        name = shortened(zone_in_words(zone.name), 72 * (left - 0.15), SMALL)
         axes.text(left - 0.1, y, name, fontsize=SMALL, color=INK, ha="right", va="center")
         axes.barh(y, full, left=left, height=0.1, color=GRID)
         axes.barh(y, full * min(zone.probability, 1.0), left=left, height=0.1, color=BLUE)

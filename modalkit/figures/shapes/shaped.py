@@ -9,7 +9,7 @@ import numpy as np
 from acquisition import Geometry, InputError, ModalData
 from acquisition.arrays import FloatArray, IntArray
 from modalkit.figures.shapes.layout import principal
-from updating import Measured, Predictor
+from updating import Measured, Prediction, Predictor
 from updating.prediction.matching import pair_modes
 
 FINE = (161, (61, 41))
@@ -101,6 +101,31 @@ def _sizes(values: FloatArray) -> FloatArray:
     return np.asarray(size * np.sign(values[first, np.arange(values.shape[1])] + 1e-300))
 
 
+def beside_model(measured: Measured, predictor: Predictor) -> tuple[Measured, Prediction]:
+    """Return the measured modes that have a partner in the model, and the predicted ones in their order."""
+    prediction = predictor.predict()
+    paired = pair_modes(measured, prediction)
+    return paired.measured, prediction.select(paired.order)
+
+
+def at_points(
+    predictor: Predictor, prediction: Prediction, places: IntArray, values: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the model's shapes at points of the test (n, n_modes), and what brings each nearest to the measured one.
+
+    Parameters
+    ----------
+    predictor, prediction : Predictor and Prediction
+        The model, and its modes in the order of the measured ones.
+    places : (n,) int array
+        Which points.
+    values : (n, n_modes) array
+        What was measured there.
+    """
+    w = predictor.point_rows()[places][:, : prediction.vectors.shape[0]] @ prediction.vectors
+    return w, np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
+
+
 def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
     """Return a test's shapes ready to draw, over the model's where there is one.
 
@@ -113,9 +138,7 @@ def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
         raise InputError("this test has no shapes to draw: only frequencies are known")
     fine, shape, frequency = None, None, None
     if predictor is not None:
-        prediction = predictor.predict()
-        paired = pair_modes(measured, prediction)
-        measured, prediction = paired.measured, prediction.select(paired.order)
+        measured, prediction = beside_model(measured, predictor)
         if predictor.spec.imported is None:
             fine, shape = _evaluate(predictor, prediction.vectors)
         frequency = prediction.frequency
@@ -125,8 +148,7 @@ def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
     values, sigma, points = values / size, sigma / np.abs(size), measured.points[place_of]
     w = None
     if predictor is not None:
-        w = predictor.point_rows()[place_of][:, : prediction.vectors.shape[0]] @ prediction.vectors
-        level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
+        w, level = at_points(predictor, prediction, place_of, values)
         w, shape = w * level, None if shape is None else shape * level
     if points.shape[1] > 2:
         return Shapes(measured.frequency, principal(points), values, sigma, None, None, frequency)

@@ -13,7 +13,7 @@ from acquisition import ModalData
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import hertz
-from modalkit.figures.shapes.shaped import common_rows
+from modalkit.figures.shapes.shaped import at_points, beside_model, common_rows
 from modalkit.figures.space import View, draw_faces, draw_lines
 from modalkit.figures.style import (
     BLUE,
@@ -35,7 +35,6 @@ from modalkit.figures.style import (
 from modalkit.views.mesh import mesh_of
 from modalkit.views.shapes import shapes_page
 from updating import Measured, Predictor
-from updating.prediction.matching import pair_modes
 
 LARGEST = 0.13
 """Motion of the point that moves most, as a part of the structure's size: enough to be seen, too little to change which
@@ -130,9 +129,7 @@ def spatial_measured(measured: Measured, predictor: Predictor | None) -> Spatial
         return None
     model, hz = None, None
     if predictor is not None:
-        prediction = predictor.predict()
-        paired = pair_modes(measured, prediction)
-        measured, prediction = paired.measured, prediction.select(paired.order)
+        measured, prediction = beside_model(measured, predictor)
         hz = prediction.frequency
     rows, at = common_rows(measured)
     assert measured.directions is not None
@@ -140,8 +137,7 @@ def spatial_measured(measured: Measured, predictor: Predictor | None) -> Spatial
     motion = (values[:, :, None] * measured.directions[at][:, None, :]).transpose(1, 0, 2)
     size = _largest(motion)
     if predictor is not None:
-        w = predictor.point_rows()[at][:, : prediction.vectors.shape[0]] @ prediction.vectors
-        level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
+        w, level = at_points(predictor, prediction, at, values)
         model = (w * level)[:, :, None] * measured.directions[at][:, None, :]
         model = model.transpose(1, 0, 2) / size
     mesh = None if predictor is None else mesh_of(predictor.spec)

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, TypedDict
 from modalkit.output.fields import Of
 
 SOMETHING_ELSE = "something_else"
-"""What stands for a cause in no library where a row of the ranking names its effects."""
+"""What stands for a cause in no library where a set of the answer, or a row of the ranking, names its effects."""
 
 
 class GapMode(TypedDict):
@@ -109,6 +109,50 @@ class RankedEntry(TypedDict):
     ]
 
 
+class MechanismSizeEntry(TypedDict):
+    """How large a mechanism is."""
+
+    quantity: Annotated[
+        str,
+        "what is stated: `added mass`, `compliance`, `relative stiffness`, or a parameter's name",
+    ]
+    value: Annotated[float, "posterior median over all sets that share the mechanism [`unit`]"]
+    unit: Annotated[str, "unit; `-` for a ratio"]
+    low95: Annotated[float, "lower end of the 95 % interval [`unit`]"]
+    high95: Annotated[float, "upper end [`unit`]"]
+
+
+class AlikeEntry(TypedDict):
+    """A set of effects that has a mechanism."""
+
+    effects: Annotated[Sequence[str], "the set; `something_else` is a cause in no library"]
+    probability: Annotated[float, "its probability, given that there is a cause [-]"]
+
+
+class MechanismEntry(TypedDict):
+    """What several sets of effects do alike, whatever the story."""
+
+    channel: Annotated[Literal["stiffness", "mass", "damping", "measurement"], "what is changed"]
+    extent: Annotated[
+        Literal["global", "local", "edge", "chain"],
+        "all over the structure, at a place, at its supports, in the measuring chain",
+    ]
+    location: Annotated[Sequence[float] | None, "most probable place, model axes; null where it has none [m]"]
+    locations: Annotated[
+        Sequence[Sequence[float]],
+        "all places that fit as well, mirrored ones too, and those that it is in at the same time [m]",
+    ]
+    location_low95: Annotated[
+        Sequence[float] | None, "lower ends of the 95 % intervals about `location`; null likewise [m]"
+    ]
+    location_high95: Annotated[Sequence[float] | None, "upper ends; null likewise [m]"]
+    size: Annotated[
+        MechanismSizeEntry | None, "how large it is; null where its sets have no quantity in common"
+    ]
+    probability: Annotated[float, "of all its sets together, given that there is a cause [-]"]
+    sets: Annotated[Sequence[AlikeEntry], "these sets, most probable first"]
+
+
 class CauseEntry(TypedDict):
     """The cause."""
 
@@ -119,6 +163,19 @@ class CauseEntry(TypedDict):
     lacks: Annotated[
         Literal["fit", "closing", "evidence", "partners", "one size", "library"] | None,
         "what the first row lacks to be an answer; null unless `verdict` is `unknown`",
+    ]
+    level: Annotated[
+        Literal["story", "mechanism"] | None,
+        "what is certain: one set is named (`story`); the set is not, what 95 % of the probability do alike is"
+        " (`mechanism`); null for neither",
+    ]
+    mechanism: Annotated[
+        MechanismEntry | None,
+        "the leading one of `mechanisms`; null for `none`, and for `unknown` where no cause in no library leads",
+    ]
+    mechanisms: Annotated[
+        Sequence[MechanismEntry],
+        "what the first set, for `unknown` a cause in no library, does: one for each effect, at the same time",
     ]
     effects: Annotated[Sequence[str], "union of `sets`"]
     sets: Annotated[
@@ -225,6 +282,9 @@ class SomethingElseEntry(TypedDict):
     probability: Annotated[float, "that it is the cause and no set is, given that there is one [-]"]
     log_bayes_factor: Annotated[
         float, "of such a cause beside the first row; above 0 something is left [-]", Of("beside")
+    ]
+    channels: Annotated[
+        Mapping[str, float], "probability that it changes each channel, where it is the cause [-]"
     ]
     changes: Annotated[
         Sequence[RegionalChangeEntry], "what it would change of the structure, what is surest first"

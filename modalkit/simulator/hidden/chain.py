@@ -8,7 +8,7 @@ import numpy as np
 
 from modalkit.simulator.hidden.base import HiddenEffect, Place, Values, either_sign, log_uniform, only_level
 from modalkit.simulator.scene import Scene
-from modalkit.simulator.setup import Setup
+from modalkit.simulator.setup import Setup, hit_points
 
 
 def _draw_gain(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
@@ -24,11 +24,6 @@ def _draw_delay(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
     """Draw a delay that turns the highest mode by a tenth of a radian to a whole turn."""
     turn = min(strength * log_uniform(rng, 0.15, 3.0), 6.0)
     return {"delay": float(either_sign(rng) * turn / (2 * np.pi * setup.nominal_hz[setup.modes - 1]))}
-
-
-def hit_points(setup: Setup) -> list[int]:
-    """Return the indices of the points that are hit."""
-    return [i for i in range(len(setup.points)) if setup.drive or i != setup.sensor]
 
 
 def _draw_reversed(rng: np.random.Generator, setup: Setup, strength: float) -> Values:

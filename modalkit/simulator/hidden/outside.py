@@ -19,13 +19,13 @@ from modalkit.simulator.hidden.base import (
     with_level,
 )
 from modalkit.simulator.hidden.build import BUILD
-from modalkit.simulator.hidden.chain import hit_points, point_places
+from modalkit.simulator.hidden.chain import point_places
 from modalkit.simulator.hidden.known import KNOWN_SINCE
 from modalkit.simulator.hidden.local import sensor_places
 from modalkit.simulator.hidden.springs import SPRINGS, at_x, cantilever, unit
 from modalkit.simulator.hidden.supports import can_show_levels
 from modalkit.simulator.scene import Scene
-from modalkit.simulator.setup import Setup
+from modalkit.simulator.setup import Setup, hit_points
 
 _CRACK = 0.004
 

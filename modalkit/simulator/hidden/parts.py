@@ -10,6 +10,7 @@ import numpy as np
 from modalkit.simulator.bodies.block.block import Block
 from modalkit.simulator.bodies.frame.frame import Frame
 from modalkit.simulator.bodies.plate.parts import PlateAttached
+from modalkit.simulator.fixing import appended
 from modalkit.simulator.hidden.base import Act, Draw, Place, Values, either_sign, log_uniform
 from modalkit.simulator.scene import Scene
 from modalkit.simulator.setup import Setup
@@ -51,35 +52,31 @@ def draw_heavy(least: float) -> Draw:
 
 def act_soft(scene: Scene, values: Values) -> Scene:
     """Change the stiffness of a part."""
-    return _with(scene, "stiff", (values["region"], 1 - values["loss"]))
+    return appended(scene, "stiff", (values["region"], 1 - values["loss"]))
 
 
 def act_heavy(scene: Scene, values: Values) -> Scene:
     """Change the mass of a part."""
-    return _with(scene, "heavy", (values["region"], values["factor"]))
+    return appended(scene, "heavy", (values["region"], values["factor"]))
 
 
 def act_loose(key: str, firm: Callable[[Any], float]) -> Act:
     """Return what leaves a joint a stiffness, stated by ``key``, of what ``firm`` states it had as drawn."""
 
     def act(scene: Scene, values: Values) -> Scene:
-        return _with(scene, "loose", (values["joint"], values[key] / firm(drawn(scene.setup))))
+        return appended(scene, "loose", (values["joint"], values[key] / firm(drawn(scene.setup))))
 
     return act
 
 
 def act_foot(scene: Scene, values: Values) -> Scene:
     """Put a foot on a spring."""
-    return _with(scene, "feet", (values["support"], values["stiffness"]))
+    return appended(scene, "feet", (values["support"], values["stiffness"]))
 
 
 def fixed(scene: Scene, part: PlateAttached) -> Scene:
     """Fix something to the body."""
-    return _with(scene, "attached", part)
-
-
-def _with(scene: Scene, field: str, more: Any) -> Scene:
-    return scene.with_body(**{field: (*getattr(scene.body, field), more)})
+    return appended(scene, "attached", part)
 
 
 def at(label: str) -> Callable[[Setup, Values], tuple[Place, ...]]:

@@ -26,17 +26,15 @@ export function fill(element, ...children) {
   append(element, children);
 }
 
-/** Return a table in a frame that scrolls. Columns are {name, number?}; cells are texts or nodes. */
+/**
+ * Return a table in a frame that scrolls. Columns are {name, number?}; cells are texts or nodes. A click on a column
+ * sorts by it, a second one the other way round; the table can be copied into a spreadsheet.
+ */
 export function table(caption, columns, rows, options = {}) {
-  const head = h(
-    "tr",
-    {},
-    columns.map((c) => h("th", { scope: "col", class: c.number ? "n" : null }, c.name)),
-  );
-  const body = rows.map((row, i) =>
+  const lines = rows.map((row, i) =>
     h(
       "tr",
-      options.row ? options.row(i) : {},
+      { "data-row": String(i), ...(options.row ? options.row(i) : {}) },
       row.map((cell, k) =>
         h(
           k ? "td" : "th",
@@ -46,11 +44,64 @@ export function table(caption, columns, rows, options = {}) {
       ),
     ),
   );
+  const body = h("tbody", {}, lines);
+  const heads = columns.map((c, k) =>
+    h("th", { scope: "col", class: c.number ? "n" : null }, button(c.name, () => sorted(k), { class: "sort" })),
+  );
+  const copying = button("Copy", () => copied(copying, [heads, ...body.rows].map(cells)), {
+    class: "small copy",
+    title: "copy the table for a spreadsheet",
+  });
+
+  function sorted(k) {
+    const down = heads[k].getAttribute("aria-sort") === "ascending";
+    heads.forEach((one) => one.removeAttribute("aria-sort"));
+    heads[k].setAttribute("aria-sort", down ? "descending" : "ascending");
+    body.append(...[...lines].sort((a, b) => (down ? -1 : 1) * compared(written(a.cells[k]), written(b.cells[k]))));
+  }
+
   return h(
     "div",
     { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, body)),
+    h(
+      "table",
+      {},
+      h("caption", {}, h("span", {}, caption), rows.length ? copying : null),
+      h("thead", {}, h("tr", {}, heads)),
+      body,
+    ),
   );
+}
+
+/** Return the text of a cell; of a list of choices the chosen one, of a button nothing. */
+function written(cell) {
+  const list = cell.querySelector("select");
+  if (list) return list.selectedOptions[0]?.textContent ?? "";
+  return cell.tagName === "TD" && cell.querySelector("button") ? "" : cell.textContent.trim();
+}
+
+const cells = (row) => [...(row.cells ?? row)].map(written);
+
+/** Compare two texts as numbers where both begin with one, else as texts. */
+function compared(a, b) {
+  const [p, q] = [a, b].map((text) => parseFloat(text.replace(/^[<>]\s*/, "").replace("−", "-")));
+  if (Number.isNaN(p) || Number.isNaN(q)) return Number.isNaN(p) - Number.isNaN(q) || a.localeCompare(b);
+  return p - q;
+}
+
+async function copied(mark, lines) {
+  const text = lines.map((line) => line.join("\t")).join("\n");
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    const area = h("textarea", { value: text }); // a page without leave to write
+    document.body.append(area);
+    area.select();
+    document.execCommand("copy");
+    area.remove();
+  }
+  mark.textContent = "Copied";
+  setTimeout(() => (mark.textContent = "Copy"), 1500);
 }
 
 /** Return a field with its label. */
@@ -76,6 +127,12 @@ export function select(options, value, onchange, attributes = {}) {
   return element;
 }
 
+/** Return a check box with its text behind it; what it becomes is passed on. */
+export function check(text, checked, onchange, attributes = {}) {
+  const change = (event) => onchange(event.target.checked);
+  return h("label", { class: "check" }, h("input", { type: "checkbox", checked, change, ...attributes }), text);
+}
+
 /** Return numbers as the tables of the command line have them. */
 export const fixed = (value, digits) => (value === null || value === undefined ? "–" : value.toFixed(digits));
 /** Return a standard deviation with so many decimals, or where these would be nothing, with two digits. */
@@ -86,23 +143,9 @@ export const raised = (unit) => unit.replace(/\^(-?\d+)/g, (_, digits) => [...di
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 export const short = (value) => (value === null || value === undefined ? "–" : String(Number(value.toPrecision(4))));
 
-export function warnings(list) {
-  if (!list || !list.length) return null;
-  return h(
-    "details",
-    { class: "warnings", open: list.length < 3 },
-    h("summary", {}, `${list.length} ${list.length > 1 ? "warnings" : "warning"}`),
-    h(
-      "ul",
-      {},
-      list.map((text) => h("li", {}, text)),
-    ),
-  );
-}
-
 /** Return the panel of a page that needs a model where the study has none. */
 export function withoutModel(title, purpose) {
-  const text = `There is no model to ${purpose}: open a study that has one, or write a [model] on the page of the model.`;
+  const text = `There is no model to ${purpose}: open a study that has one, or make one on the page of the model.`;
   return h("section", { class: "panel" }, h("h2", {}, title), h("p", {}, text));
 }
 

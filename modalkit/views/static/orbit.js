@@ -1,6 +1,6 @@
 // A camera that goes round a structure: by mouse, by finger, by keys.
 
-/** Let a canvas turn and zoom a camera about a centre. Returns {aim(centre, radius), place()}. */
+/** Let a canvas turn and zoom a camera about a centre. Returns {aim(centre, corners, aspect), place(), look()}. */
 export function orbit(canvas, camera, changed) {
   const view = { azimuth: -0.9, height: 0.5, distance: 3, centre: [0, 0, 0], radius: 1 };
   const pointers = new Map();
@@ -87,5 +87,8 @@ export function orbit(canvas, camera, changed) {
     Object.assign(view, { centre, radius, distance: 1.05 * Math.max(...needed) });
     place();
   }
-  return { aim, place };
+
+  /** Turn the camera to a direction [rad], as seen from the structure. */
+  const look = (azimuth, height) => Object.assign(view, { azimuth, height });
+  return { aim, place, look };
 }

@@ -10,6 +10,14 @@ export function models(page) {
   return [page.model, ...page.changed.map((one) => ({ ...one, surface: one.surface ?? page.model.surface }))];
 }
 
+/** Directions to look from, by name: turn about z and height above the x-y plane [rad]. */
+export const VIEWS = {
+  oblique: [-0.9, 0.5],
+  "top (x-y)": [-Math.PI / 2, 1.55],
+  "front (x-z)": [-Math.PI / 2, 0],
+  "side (y-z)": [0, 0],
+};
+
 /** A structure that moves in its modes. */
 export class Scene extends Stage {
   constructor(canvas, colours, options) {
@@ -46,7 +54,13 @@ export class Scene extends Stage {
     this.group = new THREE.Group();
     this.beside = new THREE.Group();
     this.arrows = new THREE.Group();
-    this.scene.add(this.group, this.beside, this.arrows);
+    this.rest = new THREE.Group();
+    this.pointed = new THREE.Group();
+    this.scene.add(this.group, this.beside, this.arrows, this.rest, this.pointed);
+    this.marker = new Body(this.pointed, [[0, 0, 0]], { size: 16, through: true });
+    this.marked = null;
+    const resting = new Body(this.rest, page.places, { lines: page.lines, size: 4 });
+    resting.move(page.modes[0].re, null, 1, 0, 0, () => 0, this.model);
     const dots = page.nodes.length - page.still;
     this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 0.75 });
     this.models = models(page).map((model) => this.drawn(model));
@@ -85,6 +99,7 @@ export class Scene extends Stage {
     this.mode = mode;
     this.options = options;
     this.arrows.visible = options.arrows;
+    this.rest.visible = options.rest;
     const shape = this.page.modes[mode];
     this.largest = Math.max(1e-300, ...shape.re.map((v, i) => Math.hypot(...v, ...shape.im[i])));
     this.partner = models(this.page)[options.which]?.modes[mode] ?? null;
@@ -93,6 +108,8 @@ export class Scene extends Stage {
       one.group.visible = one === this.fem;
     });
     this.beside.visible = Boolean(this.partner) && options.model !== "no";
+    if (this.only) this.beside.visible = false;
+    for (const one of this.group.children) one.visible = !(this.only && one.isMesh);
     this.apart = options.model === "beside" ? this.offset() : [0, 0, 0];
     this.beside.position.set(...this.apart);
     this.surfaceShape = null;
@@ -112,6 +129,12 @@ export class Scene extends Stage {
     const step = [0, 0, 0];
     step[k] = Math.max(1.35 * this.spread[k], 0.3 * this.size);
     return step;
+  }
+
+  /** Look from one of the usual directions. */
+  look(name) {
+    this.orbit.look(...VIEWS[name]);
+    this.aim();
   }
 
   aim() {
@@ -154,6 +177,11 @@ export class Scene extends Stage {
     if (difference)
       this.test.move(shape.re, shape.im, cos, sin, scale, (i) => Math.min(1, difference[i] / 0.3), this.good);
     else this.test.move(shape.re, shape.im, cos, sin, scale, at, this.shades);
+    this.pointed.visible = this.marked !== null;
+    if (this.pointed.visible) {
+      this.marker.places = [this.seen()[this.marked]];
+      this.marker.move([[0, 0, 0]], null, 1, 0, 0, () => 1, this.shades);
+    }
     if (this.beside.visible && this.surfaceShape) {
       const w = this.surfaceShape;
       const own = (i) => {
@@ -171,6 +199,18 @@ export class Scene extends Stage {
         this.options.model === "beside" ? this.shades : this.model,
       );
     }
+  }
+
+  /** Show points and lines of the test alone, to be drawn at, or all. */
+  alone(on) {
+    this.only = on;
+    this.choose(this.mode, this.options);
+  }
+
+  /** Mark a point of the test; null for none. */
+  mark(index) {
+    this.marked = index;
+    this.dirty = true;
   }
 
   /** Go on, or stand still where the mode is at its largest. */

@@ -84,11 +84,11 @@ export class Stage {
     const step = Math.min(100, now - (this.last ?? now)) / 1000;
     this.last = now;
     this.advance(step);
-    const still = !this.dirty && now - this.drawn > STILL;
+    const still = !this.dirty && now - this.finished > STILL;
     if (!this.ready() || !(this.dirty || (this.soft && still && this.refine(FINE)))) return;
     if (this.dirty) {
       this.refine(this.soft ? 1 : Math.min(FINE, window.devicePixelRatio));
-      this.drawn = now;
+      this.finished = now;
     }
     this.dirty = false;
     const begun = performance.now();

@@ -1,9 +1,9 @@
 // Modes as they move: which one, how large, test and model, their difference. Given the data of the shapes.
 
-import { button, field, fill, fixed, h, palette, select, table } from "./dom.js";
-import { models, Scene } from "./scene.js";
+import { button, check, field, fill, fixed, h, palette, select, table } from "./dom.js";
+import { models, Scene, VIEWS } from "./scene.js";
 
-/** Put a viewer of shapes into an element. Returns {show(page), recolour(), close(), list}. */
+/** Put a viewer of shapes into an element. Returns {show(page), stop(), recolour(), close(), list, canvas, scene()}. */
 export function viewer(root, { kept = false } = {}) {
   const canvas = h("canvas", {
     tabindex: "0",
@@ -17,7 +17,7 @@ export function viewer(root, { kept = false } = {}) {
   const legend = h("p", { class: "muted", "aria-live": "polite" }),
     list = h("div");
   root.append(picker, tools, frame, legend);
-  const view = { mode: 0, options: { model: "over", which: 0, difference: false, arrows: false }, page: null, scene: null };
+  const view = { mode: 0, options: { model: "over", which: 0, difference: false, arrows: false, rest: false }, page: null, scene: null };
 
   function show(page) {
     view.page = page;
@@ -58,19 +58,14 @@ export function viewer(root, { kept = false } = {}) {
       }),
     );
   const tick = (name, key) =>
-    h(
-      "label",
-      { class: "check" },
-      h("input", {
-        type: "checkbox",
-        checked: view.options[key],
-        id: key,
-        change: (e) => {
-          view.options[key] = e.target.checked;
-          again();
-        },
-      }),
+    check(
       name,
+      view.options[key],
+      (on) => {
+        view.options[key] = on;
+        again();
+      },
+      { id: key },
     );
 
   function tooled() {
@@ -99,6 +94,12 @@ export function viewer(root, { kept = false } = {}) {
       button(scene.playing ? "Pause" : "Play", turn, { id: "play" }),
       slider("Amplitude", "amplitude", "3"),
       slider("Speed", "speed", "2"),
+      h(
+        "span",
+        { class: "row tight", role: "group", "aria-label": "view" },
+        Object.keys(VIEWS).map((name) => button(name, () => scene.look(name), { class: "small", "data-view": name })),
+      ),
+      tick("undeformed", "rest"),
       tick("directions measured", "arrows"),
       view.models.length > 1
         ? field(
@@ -164,8 +165,17 @@ export function viewer(root, { kept = false } = {}) {
     tip.hidden = true;
   });
 
+  /** Stand still, to be drawn at. */
+  function stop() {
+    view.scene?.play(false);
+    tooled();
+  }
+
   return {
     show,
+    stop,
+    canvas,
+    scene: () => view.scene,
     list,
     recolour: () => view.page && show(view.page),
     close: () => view.scene?.close(),
@@ -212,6 +222,7 @@ function caption(page, mode, view) {
         ? "One point of the lines was not measured and is drawn at rest."
         : `${page.still} points of the lines were not measured and are drawn at rest.`,
     );
+  if (page.lines_from === "grid" && page.lines.length) parts.push("The file has no lines; they join the neighbours of the grid.");
   if (page.why) parts.push(`${page.why[0].toUpperCase()}${page.why.slice(1)}.`);
   if (page.no_model && page.no_model !== "the study has no [model]") parts.push(`No model: ${page.no_model}`);
   return parts.join(" ");

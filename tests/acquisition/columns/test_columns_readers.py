@@ -191,6 +191,7 @@ def test_a_rule_that_means_nothing_is_refused(rule, says):
         layout_from({"frequency_column": "f", "column": FRF_COLUMNS, "file": [rule]})
 
 
+@pytest.mark.long
 def test_a_layout_takes_units_as_a_study_does():
     column = {"index": 0, "quantity": "force"}
     nodes = {"1": ["80 mm", 0, 0.0], "2": [0.5, "-2 in", "1 m"]}

@@ -95,6 +95,7 @@ def test_variance_is_the_diagonal_and_covariance_the_product():
     assert [rows.tolist() for rows in frfs.scatter.hit_groups] == [[0, 1], [2, 3]]
 
 
+@pytest.mark.long
 def test_unequal_hits_leave_no_bias():
     """Hits of very different strength, equal noise: the weak ones must not spoil the stated variance."""
     ratios = []

@@ -128,6 +128,7 @@ def test_what_each_hit_does_is_carried_through(rng, roving):
     assert np.allclose(found.variance, found.scatter.variance(len(pairs)))
 
 
+@pytest.mark.long
 def test_a_variance_without_hits_is_carried_as_of_independent_frfs(rng):
     pairs = [(i, j) for j in range(4) for i in (0, 2)]
     loaded = measured(pairs, lambda i: [(0, ACCELEROMETER), (2, ACCELEROMETER)])

@@ -208,6 +208,7 @@ def test_a_slanted_top_tells_the_window_where_there_is_no_noise(rng):
     assert clipped_hits(test) == [3]
 
 
+@pytest.mark.long
 def test_a_top_of_two_samples_is_clipped_where_the_steps_are_fine(rng):
     """At 2 kHz a pulse of 2.4 ms has five samples, and its clipped top two of them."""
     found = false = 0

@@ -115,7 +115,8 @@ def test_what_cannot_be_split_says_why(rng):
     with pytest.raises(InputError, match=r"no room for 2 s before the trigger"):
         split_hits(test, duration=1.0, pre=2.0)
     with pytest.raises(
-        InputError, match=r"several hits each, and an exponential window of 3 1/s.*without it.*out of --decay"
+        InputError,
+        match=r"several hits, and an exponential window of 3 1/s.*without the window.*from --decay",
     ):
         split_hits(replace(test, decay=3.0))
 

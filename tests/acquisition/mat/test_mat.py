@@ -208,6 +208,7 @@ def test_a_variable_that_stands_twice_is_not_chosen_from(tmp_path: Path) -> None
         read_mat(tmp_path / "test.mat", layout({"frequency": "fn"}))
 
 
+@pytest.mark.long
 def test_a_bomb_takes_no_more_than_its_share(tmp_path: Path) -> None:
     path = saved(tmp_path, fn=np.zeros(20_000_000), other=np.zeros(20_000_000))
     assert path.stat().st_size < 1_000_000

@@ -280,6 +280,7 @@ def test_fuzz_cut_anywhere(tmp_path, seeds, which, share):
         assert "broken.uff" in str(error) and "\n" not in str(error)
 
 
+@pytest.mark.long
 @FUZZ
 @given(
     which=st.integers(0, 1),
@@ -296,6 +297,7 @@ def test_fuzz_bytes_flipped(tmp_path, seeds, which, flips):
         assert "broken.uff" in str(error)
 
 
+@pytest.mark.long
 @FUZZ
 @given(
     which=st.integers(0, 1),

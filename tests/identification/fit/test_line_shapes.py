@@ -88,6 +88,7 @@ def check(model, damping, *, off, sigmas=4.5):
     assert np.max(np.abs(modal.damping - damping) / modal.damping_sigma) < sigmas
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["accelerance", "mobility"])
 def test_hann_averages_whose_peaks_are_a_line_wide(form):
     frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=3, form=form)
@@ -178,6 +179,7 @@ def test_a_stated_window_counts_beside_a_drift():
     assert model.frfs.line_shape is not None
 
 
+@pytest.mark.long
 def test_coarse_lines_smoothed_over_three():
     poles, residues = structure(0.03)
     frequency = np.arange(5.0, 156.0, 5.0)

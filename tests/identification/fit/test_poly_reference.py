@@ -24,6 +24,7 @@ def matrix(n_points: int = 25) -> list[tuple[int, int]]:
     return [(i, j) for j in REFERENCES for i in range(1, n_points + 1)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("low", "order", "noise"),
     [(0.0, 60, 0.03), (10.0, 40, 0.01), (100.0, 100, 0.01), (300.0, 40, 0.03), (300.0, 100, 0.001)],
@@ -85,6 +86,7 @@ def test_gaps_in_the_matrix_do_no_harm():
     assert np.diag(mac(model.modal.shapes, exact)).min() > 0.999
 
 
+@pytest.mark.long
 def test_frequencies_that_drift_from_point_to_point_make_no_second_mode():
     """A sensor that roves moves each point's frequencies; the shapes differ from row to row alone."""
     rng = np.random.default_rng(5)

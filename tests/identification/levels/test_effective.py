@@ -31,6 +31,7 @@ def of(rng: np.random.Generator, error: float) -> tuple[np.ndarray, np.ndarray, 
     return slope, fitted, np.hypot(sigma, fitted * found.scale_sigma), found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("error", [0.0, 0.05])
 def test_slopes_have_no_bias_and_intervals_hold(error: float) -> None:
     rng = np.random.default_rng(7)

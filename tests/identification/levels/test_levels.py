@@ -92,6 +92,7 @@ def test_drift_from_point_to_point_is_no_slope() -> None:
     assert dependence.slope_sigma[1] < naive
 
 
+@pytest.mark.long
 def test_refused_hits_do_not_count() -> None:
     test, _ = struck(structure(0.0), 4, replace(PLAN, bad={(0, 1): "double", (2, 3): "double"}))
     verdicts = judge_hits(test)
@@ -115,6 +116,7 @@ def test_tests_that_cannot_tell_say_why(plan: HammerPlan, reason: str) -> None:
     assert level_dependence(identify(estimate_frfs(test), band=BAND), [(test, ())]) is None
 
 
+@pytest.mark.long
 def test_the_level_is_the_one_that_averages_stand_for() -> None:
     """The averaged FRFs of a softening structure have the frequency of the level given, not of the plain mean."""
     test, true = struck(

@@ -164,6 +164,7 @@ def test_msf_is_the_least_squares_factor(rng):
         np.testing.assert_allclose(value, np.linalg.lstsq(a[:, [r]], b[:, r], rcond=None)[0][0], rtol=1e-10)
 
 
+@pytest.mark.long
 @given(st.integers(0, 10_000), st.permutations(range(7)), st.floats(-120, 120))
 def test_order_of_points_conjugation_and_unit_change_nothing(seed, order, power):
     rng = np.random.default_rng(seed)

@@ -39,6 +39,7 @@ def test_each_mode_is_one_direction_of_the_frfs(rng, modes, points):
     assert modes <= directions(frfs) <= modes + 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("modes", [42, 60])
 def test_many_modes_of_many_points_are_all_candidates(rng, modes):
     frfs, hertz = crowded(rng, modes=modes)

@@ -60,6 +60,7 @@ def scores(models: list[ModalModel], truth: Truth):
     return errors, errors / np.array([m.modal.damping_sigma for m in models])
 
 
+@pytest.mark.long
 def test_time_integration_agrees_with_the_dynamic_stiffness(truth):
     """The simulator itself: without noise its FRFs are those of M s^2 + C s + K."""
     quiet = Rig(noise=0.0, force_noise=0.0, hits=2)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from driven import CHROMIUM, Served
 from opening import FAINT
 
 from acquisition import Dof, FrfSet, write_uff
@@ -48,3 +51,36 @@ def faint(tmp_path: Path, rng: np.random.Generator) -> Path:
     path = tmp_path / "faint.uff"
     write_uff(path, frfs=frfs)
     return path
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")
+    with sync.sync_playwright() as playwright:
+        arguments = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+        one = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield one
+        one.close()
+
+
+@pytest.fixture
+def serve() -> Iterator[Callable[[Path], Served]]:
+    started: list[Served] = []
+
+    def start(path: Path) -> Served:
+        started.append(Served(path))
+        return started[-1]
+
+    yield start
+    for one in started:
+        one.kill()
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """Serve the study of a beam to the tests that leave it as they find it."""
+    folder = tmp_path_factory.mktemp("shown")
+    shutil.copytree(ROOT / "sample_data" / "beam_dry", folder / "beam_dry")
+    served = Served(folder / "beam_dry" / "study.toml")
+    yield served
+    served.kill()

@@ -1,148 +1,25 @@
-"""The whole way of the work in a browser, on hits with a model: what the page shows is what the command line prints.
-
-Needs Debian's ``chromium`` (or one named by ``MODALKIT_CHROMIUM``); without it these tests are skipped.
-"""
+"""The whole way of the work in a browser, on hits with a model: what the page shows is what the command line prints."""
 
 from __future__ import annotations
 
 import json
-import os
 import shutil
-import subprocess
-import sys
-import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from accessible import grave_findings
-from glider import make_glider
-from opening import FAINT
+from driven import (
+    IN_A_BROWSER,
+    MOVING,
+    NAMELESS,
+    Page,
+    commanded,
+    identified,
+    printed,
+    rms,
+)
 
-CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
-pytestmark = [
-    pytest.mark.long,
-    pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium"),
-]
-sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")
-
-PATIENCE = 240_000
-"""Milliseconds that a page may take on a machine shared with others."""
-
-
-class Served:
-    """The app as a process of its own, which can be killed."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.start()
-
-    def start(self) -> None:
-        command = [sys.executable, "-m", "modalkit", "app", str(self.path), "--no-browser"]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        assert self.process.stdout is not None
-        self.address = self.process.stdout.readline().strip()
-        assert self.address.startswith("http://127.0.0.1:"), self.address
-
-    def kill(self) -> None:
-        self.process.kill()
-        self.process.wait()
-        assert self.process.stdout is not None
-        self.process.stdout.close()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with sync.sync_playwright() as playwright:
-        arguments = ["--no-sandbox", "--enable-unsafe-swiftshader"]
-        one = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield one
-        one.close()
-
-
-@pytest.fixture
-def serve() -> Iterator[Callable[[Path], Served]]:
-    started: list[Served] = []
-
-    def start(path: Path) -> Served:
-        started.append(Served(path))
-        return started[-1]
-
-    yield start
-    for one in started:
-        one.kill()
-
-
-@pytest.fixture(scope="module")
-def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """Serve the study of a beam to the tests that leave it as they find it."""
-    folder = tmp_path_factory.mktemp("shown")
-    shutil.copytree(Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry", folder / "beam_dry")
-    served = Served(folder / "beam_dry" / "study.toml")
-    yield served
-    served.kill()
-
-
-class Page:
-    """A tab, with everything it complained of and every foreign address it asked."""
-
-    def __init__(self, browser: Any, served: Served, **options: Any) -> None:
-        self.served, self.faults, self.foreign = served, [], []
-        self.tab = browser.new_page(**options)
-        self.tab.set_default_timeout(PATIENCE)
-        self.tab.on("console", self._listen)
-        self.tab.on("pageerror", lambda error: self.faults.append(str(error)))
-        self.tab.on("request", self._watch)
-
-    def _listen(self, message: Any) -> None:
-        refused = "422" in message.text  # a change that cannot be made, which the page says itself
-        if message.type == "error" and not refused:
-            self.faults.append(message.text)
-
-    def _watch(self, request: Any) -> None:
-        if not request.url.startswith((self.served.address, "data:", "blob:", "about:")):
-            self.foreign.append(request.url)
-
-    def open(self, name: str) -> None:
-        self.tab.goto(f"{self.served.address}#{name}")
-        self.tab.locator(f".page-{name}").wait_for(state="attached")
-        self.settle()
-
-    def settle(self) -> None:
-        """Wait until nothing is being computed or drawn: the page is marked as busy from each event on."""
-        self.tab.locator('#page[aria-busy="false"]').wait_for(state="attached")
-
-    def modes(self) -> list[list[str]]:
-        """Return the columns of frequency, damping, and their standard deviations on the page of the modes."""
-        rows = self.tab.locator(".page-modes tbody tr").all()
-        return [row.locator("td").all_inner_texts()[:4] for row in rows]
-
-
-def commanded(command: str, path: Path, folder: Path, *options: str) -> dict[str, Any]:
-    """Return the JSON that the command line gives of a study."""
-    out = folder / f"{command}.json"
-    words = [sys.executable, "-m", "modalkit", command, str(path), *options, "--json", str(out)]
-    subprocess.run(words, check=True, capture_output=True)
-    return json.loads(out.read_text(encoding="utf-8"))
-
-
-def identified(path: Path, folder: Path) -> dict[str, Any]:
-    """Return the modes that the command line gives of a study."""
-    return commanded("identify", path, folder)
-
-
-def printed(document: dict[str, Any]) -> list[list[str]]:
-    """Return the same columns of a JSON file of modes, with the decimals of the command line."""
-    return [
-        [
-            f"{mode['frequency_hz']:.4f}",
-            f"{mode['frequency_sigma_hz']:.5f}",
-            f"{100 * mode['damping_ratio']:.4f}",
-            f"{100 * mode['damping_sigma']:.5f}",
-        ]
-        for mode in document["modes"]
-    ]
+pytestmark = IN_A_BROWSER
 
 
 def test_the_way_of_the_work(browser, serve, beam, tmp_path):
@@ -214,10 +91,6 @@ def watch_shapes(page: Page) -> None:
     page.tab.locator(MOVING).wait_for()
 
 
-MOVING = "canvas[data-fps]:not([data-fps='0.0'])"
-"""The picture of shapes once it has moved."""
-
-
 def slide_and_pair(page: Page) -> None:
     tab = page.tab
     page.open("model")
@@ -258,11 +131,6 @@ def slide_and_pair(page: Page) -> None:
     assert tab.locator("#rms").inner_text() == before
 
 
-def rms(text: str) -> float:
-    """Return the number of a line of the page of the model [%]."""
-    return float(text.split(maxsplit=1)[0])
-
-
 def update_the_model(page: Page) -> None:
     page.open("update")
     page.tab.locator("#start-update").click()
@@ -299,7 +167,9 @@ def diagnose_and_stop(page: Page) -> str:
     report_opens(page, answer)
     tab.locator("#accept-0").click()
     page.settle()
-    assert "into the model" in tab.locator("#undo").get_attribute("title")
+    assert tab.locator("#undo").get_attribute("title").startswith("undo: accept ")
+    assert "diagnose the rest" in tab.locator("#accepted").inner_text()
+    assert tab.locator("#start-diagnose").inner_text() == "Diagnose the rest"
     tab.locator("#undo").click()
     tab.locator("#diagnosis-answer").wait_for()
     assert tab.locator("#diagnosis-answer").inner_text() == answer
@@ -341,7 +211,7 @@ def test_a_refused_change_says_why_and_changes_nothing(browser, shown):
 
 
 def test_a_typed_limit_outlasts_an_undo_and_enter_sets_it(browser, serve, beam):
-    """What was said of a mode ends with the state it was of; a study without a model says what to write."""
+    """What was said of a mode ends with the state it was of; a study without a model has a form for one."""
     text = beam.read_text(encoding="utf-8")
     beam.write_text(text[: text.index("[model]")], encoding="utf-8")
     page = Page(browser, serve(beam))
@@ -358,7 +228,7 @@ def test_a_typed_limit_outlasts_an_undo_and_enter_sets_it(browser, serve, beam):
     page.tab.locator("#band-high").press("Enter")
     page.tab.locator("#undo[title*='band 5 to 480 Hz']").wait_for()
     page.open("model")
-    assert 'type = "calculix"' in page.tab.locator("#no-model").inner_text()
+    assert page.tab.locator("#form-type option").all_inner_texts()[0] == "beam"
     assert page.faults == []
 
 
@@ -403,14 +273,6 @@ def test_axe_has_nothing_grave_to_say(browser, shown, width, scheme):
     assert page.foreign == []
 
 
-NAMELESS = """[...document.querySelectorAll("main button, main input, main select, main textarea, header button")]
-  .filter((e) => e.checkVisibility())
-  .filter((e) => !(e.textContent.trim() && e.tagName === "BUTTON"))
-  .filter((e) => !e.getAttribute("aria-label") && !e.labels?.length)
-  .map((e) => e.outerHTML.slice(0, 80))"""
-"""Controls that a screen reader could not name."""
-
-
 def test_the_keyboard_reaches_hits_and_poles(browser, shown):
     page = Page(browser, shown)
     page.open("hits")
@@ -422,95 +284,3 @@ def test_the_keyboard_reaches_hits_and_poles(browser, shown):
     page.tab.keyboard.press("Control+z")
     page.settle()
     assert page.tab.locator('[data-hit="1+Z:1"]').is_checked()
-
-
-def test_a_region_is_softened_and_every_number_can_be_read_on_a_phone(browser, serve, tmp_path):
-    page = Page(browser, serve(make_glider(tmp_path / "glider")), viewport={"width": 390, "height": 850})
-    page.open("model")
-    page.tab.locator(".heatmaplayer image").wait_for(state="attached")
-    assert page.tab.evaluate(OVERLAPS) == []
-    before = page.tab.locator("#rms").inner_text()
-    page.tab.locator("#region").select_option("wing_left_outer")
-    slider = page.tab.locator('[id="factor-wing_left_outer.E"]')
-    slider.evaluate("input => { input.value = Math.log10(0.6); input.dispatchEvent(new Event('input')); }")
-    page.tab.get_by_text("over 17 pairs").wait_for()
-    assert rms(page.tab.locator("#rms").inner_text()) < rms(before)
-    page.tab.locator("#slide-reset").click()
-    page.tab.get_by_text(before, exact=True).wait_for()
-    page.open("modes")
-    rows = page.tab.locator(".page-modes tbody tr")
-    assert max(row.bounding_box()["height"] for row in rows.all()) < THREE_LINES
-    page.tab.locator(".heatmaplayer image").wait_for(state="attached")
-    assert page.tab.evaluate(OVERLAPS) == []
-    assert page.faults == []
-
-
-THREE_LINES = 80
-"""Height of a row of three lines at the most [pixels]."""
-
-OVERLAPS = """[...document.querySelectorAll(".xaxislayer-above")].flatMap((layer) => {
-  const boxes = [...layer.querySelectorAll(".xtick text")].map((t) => [t.textContent, t.getBoundingClientRect()]);
-  boxes.sort((a, b) => a[1].left - b[1].left);
-  return boxes.slice(1).filter(([, b], i) => boxes[i][1].right > b.left).map(([text]) => text);
-})"""
-"""Numbers at an axis that run into those before them."""
-
-
-PIXELS = "canvas => canvas.width / canvas.clientWidth"
-"""Pixels drawn per pixel of the page."""
-
-
-def test_without_a_graphics_card_few_pixels_are_drawn_while_shapes_move(browser, shown):
-    """One each, without further samples, on whatever screen; a picture that stands still is drawn as fine as any."""
-    page = Page(browser, shown, device_scale_factor=2)
-    page.open("shapes")
-    canvas = page.tab.locator("canvas[data-fps]")
-    canvas.wait_for()
-    if canvas.get_attribute("data-soft") != "true":
-        pytest.skip("this machine has a graphics card")
-    assert canvas.evaluate(PIXELS) == pytest.approx(1.0, abs=0.01)
-    assert canvas.evaluate("c => c.getContext('webgl2').getContextAttributes().antialias") is False
-    page.tab.locator("#play").click()
-    ends = time.monotonic() + PATIENCE / 1000
-    while canvas.evaluate(PIXELS) != pytest.approx(2.0, abs=0.01):
-        assert time.monotonic() < ends
-        page.tab.wait_for_timeout(100)
-    assert page.faults == []
-
-
-def test_points_of_shapes_are_as_large_on_a_fine_screen(browser, shown):
-    """Sizes are those of the page's pixels; three.js multiplies by the pixels drawn."""
-    sizes = []
-    for scale in (1, 2):
-        page = Page(browser, shown, device_scale_factor=scale)
-        page.open("shapes")
-        sizes.append(page.tab.evaluate(SIZE))
-    assert sizes[0] == sizes[1] > 0
-
-
-SIZE = """async () => {
-  const { Body } = await import("./static/body.js");
-  const made = [];
-  new Body({ add: (object) => made.push(object) }, [[0, 0, 0]]);
-  return made[0].material.size;
-}"""
-"""The size of a point, as three.js is told."""
-
-
-def test_a_faint_mode_is_picked_by_keys(browser, serve, faint, tmp_path):
-    """What the automatic choice leaves out is kept once it is picked, with the numbers of the command line."""
-    page = Page(browser, serve(faint))
-    page.open("modes")
-    before = page.modes()
-    page.tab.locator("#pick-hertz").focus()
-    page.tab.keyboard.type(str(FAINT))
-    page.tab.keyboard.press("Enter")
-    page.tab.get_by_role("button", name="picked").wait_for()
-    page.settle()
-    picked = page.modes()
-    assert len(picked) == len(before) + 1
-    assert any(abs(float(row[0]) - FAINT) < 0.01 * FAINT for row in picked)
-    assert "picked by you" in page.tab.locator(".page-modes table").inner_text()
-    named = commanded("identify", faint, tmp_path, "--add", str(FAINT))
-    assert printed(named) == picked
-    assert page.faults == []

@@ -15,6 +15,7 @@ from opening import opened
 from acquisition.errors import InputError
 from modalkit.app.controller import Controller
 from modalkit.app.digests import digest_of
+from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 from modalkit.app.work import KINDS, REPORT, Progress, run
 from modalkit.output.update import to_json
@@ -55,6 +56,21 @@ def test_a_stop_takes_less_than_a_second_and_leaves_nothing(beam):
     assert ended(controller, "diagnose")["result"] is None
     assert not list((Store.beside(beam).folder / "results").iterdir())
     controller.stop()  # once more is no harm
+
+
+@pytest.mark.long
+def test_single_causes_are_seen_while_the_diagnosis_goes_on(beam):
+    controller = opened(beam)
+    controller.start("diagnose")
+    until = time.monotonic() + PATIENCE
+    while len((job := controller.work("diagnose")["job"])["found"]) < 3 and time.monotonic() < until:
+        assert job["state"] == "running", job
+        time.sleep(0.05)
+    first, *others = job["found"]
+    assert (first["name"], first["power"]) == ("", 0.0)
+    assert len({one["name"] for one in others}) == len(others) > 1
+    controller.stop()
+    assert controller.work("diagnose")["result"] is None
 
 
 @pytest.mark.long
@@ -123,7 +139,7 @@ def test_a_result_belongs_to_its_files(samples):
     lowered(modes)
     again = opened(study)
     for one in (controller, again):
-        assert one.work("update") == {"job": None, "result": None}
+        assert one.work("update") == {"job": None, "result": None, "asks": {}}
         assert one.state()["results"] == []
         shown = plain(one.modes())["table"]
         assert [row["frequency_hz"] for row in (table[0], shown[0])] == [float(FIRST), float(LOWER)]
@@ -218,7 +234,28 @@ def test_a_process_that_writes_much_is_read_and_its_last_words_are_kept(tmp_path
     words = [sys.executable, "-c", NOISY]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     job = Job("update", "key", tmp_path, process, time.monotonic())
-    _watch(job)
+    _watch(job, tmp_path / "times.json")
     assert job.state == "failed"
     assert job.error == "ValueError: this went wrong"
     assert [name for name, _ in job.stages] == ["on and on"]
+
+
+@pytest.mark.long
+def test_a_process_that_waits_is_used_and_ended(beam):
+    """The first of two updates is done by it; the second knows how long it will take."""
+    controller = Controller(open_path(beam), Store.beside(beam), warm=True)
+    assert controller.work("update")["result"] is None
+    waiting = controller._jobs._waiting
+    assert waiting is not None and waiting.poll() is None
+    controller.start("update")
+    assert controller._jobs.last.process is waiting
+    assert controller._jobs.last.document()["remaining_s"] is None
+    ended(controller, "update")
+    controller.act("order", {"order": 40})
+    controller.start("update")
+    assert controller._jobs.last.document()["remaining_s"] > 0
+    controller.stop()
+    controller.work("update")
+    last = controller._jobs._waiting
+    controller.close()
+    assert last.poll() is not None

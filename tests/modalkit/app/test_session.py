@@ -34,6 +34,7 @@ TABLES = st.recursive(
 )
 
 
+@pytest.mark.long
 @given(TABLES)
 def test_tables_are_read_back_as_they_were_written(tables):
     assert tomllib.loads(toml_text(tables)) == tables
@@ -83,6 +84,7 @@ def test_a_change_that_lacks_something_is_an_error_on_purpose(arguments):
         ACTIONS["pick"]({"test": {}}, arguments)
 
 
+@pytest.mark.long
 def test_the_study_shows_what_the_command_line_gives(beam):
     controller = opened(beam)
     controller.act("hit", {"point": "1+Z", "hit": 2, "used": False, "proposed": True})
@@ -180,6 +182,7 @@ for order in range(20, 400):
 """
 
 
+@pytest.mark.long
 def test_killed_at_any_time_the_state_is_the_last_or_the_one_before(beam):
     words = [sys.executable, "-c", KILLED, str(beam), str(Path(__file__).parent)]
     process_ = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
@@ -206,6 +209,7 @@ def test_a_folder_that_cannot_be_written_is_left_alone(beam, tmp_path, monkeypat
     assert str(controller.export()["folder"]).startswith(str(tmp_path / "home"))
 
 
+@pytest.mark.long
 def test_pairs_that_are_stated_stand(beam):
     controller = opened(beam)
     found = plain(controller.model())["correlation"]["pairs"]
@@ -259,3 +263,20 @@ def test_a_port_that_is_taken_is_an_error_on_purpose(beam):
         other.listen()
         with pytest.raises(InputError, match="give another"):
             serve(beam, port=other.getsockname()[1], browser=False)
+
+
+@pytest.mark.long
+def test_hits_are_judged_once_and_decisions_come_to_the_numbers_of_the_command_line(beam, monkeypatch):
+    from modalkit.workflow import judged_hits
+
+    controller = opened(beam)
+    controller.hits()
+    monkeypatch.setattr(judged_hits, "judge_hits", None)  # not called again
+    controller.act("hit", {"point": "1+Z", "hit": 2, "used": False, "proposed": True})
+    controller.act("estimator", {"name": "H2"})
+    shown = plain(controller.modes())["table"]
+    folder = Path(controller.export()["folder"])
+    monkeypatch.undo()
+    _, model = process(read_study(folder / "study.toml"))
+    assert [row["frequency_hz"] for row in shown] == model.modal.frequency.tolist()
+    assert [row["damping_sigma"] for row in shown] == model.modal.damping_sigma.tolist()

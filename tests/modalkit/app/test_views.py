@@ -12,19 +12,26 @@ import pytest
 from glider import PARTS, SOFT, make_glider
 from opening import FAINT, opened
 
-from acquisition import Dof, Geometry, ModalData
-from acquisition.errors import InputError
+from acquisition import Dof, Geometry, ModalData, read_uff
+from acquisition.errors import InputError, ModalkitError
 from acquisition.hits.checks import force_bands, pulse_spectrum
 from identification import pole_origins
+from identification.poles.stabilisation import StabilisationChart
 from modalkit import read
 from modalkit.app.acceptance import acceptable, accepted_entries
 from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
+from modalkit.report.document import Moving
+from modalkit.report.tested import modal_of, shapes_section
+from modalkit.study.read import read_study
 from modalkit.views.curves import POINTS, envelope
 from modalkit.views.faces import closed_faces
+from modalkit.views.grid_lines import grid_lines
 from modalkit.views.hits import first_frf, force_trace
 from modalkit.views.pairs import pairs_of
 from modalkit.views.shapes import Changed, shapes_page
+from modalkit.views.stability import pole_stability
+from modalkit.workflow.case import open_study
 from updating.models.state import State
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
@@ -41,6 +48,32 @@ def test_every_pole_of_the_chart_has_a_reason(faint):
     stable = np.abs(frequency - 110.0) < 0.02
     assert np.mean(kinds[stable] == "dropped") > 0.5
     assert origins.modes[np.argmin(np.abs(model.modal.frequency - FAINT))] == "named"
+
+
+def test_the_frfs_are_there_before_the_modes_and_not_needed_after(faint):
+    controller = opened(faint)
+    page = plain(controller.measured())
+    frfs = read_uff(faint).frfs
+    assert max(page["sum"]["sum"]) == pytest.approx(np.abs(frfs.values).sum(axis=0).max())
+    assert page["band"] == [1.0, 600.0]
+    assert page["frf"]["magnitude"] == plain(controller.frf(0))["magnitude"]
+    controller.modes()
+    assert controller.measured() is None
+    controller.act("order", {"order": 40})
+    assert controller.measured() is None, "the change has identified the modes already"
+    controller.step(back=True)
+    assert controller.measured() is None
+
+
+def test_indicators_of_the_page_have_their_minima_and_peaks_at_the_modes(faint):
+    page = plain(opened(faint).indicators())
+    lines = np.array(page["x"])
+    for hertz in (110.0, 430.0):
+        near = np.abs(lines - hertz) < 20
+        assert lines[near][np.argmax(np.array(page["CMIF 1"])[near])] == pytest.approx(hertz, abs=2)
+        assert lines[near][np.argmin(np.array(page["MvMIF 1"])[near])] == pytest.approx(hertz, abs=2)
+    assert page["why"] == ""
+    assert "MvMIF 2" not in page, "the file has one reference"
 
 
 def test_a_mode_that_no_chain_became_was_added_by_the_refinement(faint):
@@ -147,6 +180,7 @@ def test_the_spectrum_in_the_picture_is_the_one_that_is_judged():
     assert band20 == frequency[np.flatnonzero(size < 0.1 * size[0])[0]]
 
 
+@pytest.mark.long
 def test_a_slider_shows_what_the_study_shows_with_the_same_number(beam):
     """Frequencies of a bending beam follow the root of E; an effect moved is the effect put into the model."""
     controller = opened(beam)
@@ -223,6 +257,7 @@ def test_a_longer_model_is_drawn_longer_and_moves_the_points_where_they_are(beam
         )
 
 
+@pytest.mark.long
 def test_the_pairs_of_the_pages_are_those_of_the_correlation(beam):
     controller = opened(beam)
     beside = controller._beside(controller.study)
@@ -289,6 +324,7 @@ def moves(sliders: list[dict[str, Any]], end: str) -> Iterator[dict[str, Any]]:
             }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("end", ["start", "low", "high"])
 def test_every_effect_that_has_sliders_can_be_moved_to_their_ends(beam, end):
     controller = opened(beam)
@@ -349,6 +385,7 @@ def test_a_row_of_the_diagnosis_is_put_where_its_names_say(frame):
     assert controller.study.model.effect[-1] == entries[0]
 
 
+@pytest.mark.long
 def test_a_hypothesis_is_not_put_into_the_model(frame):
     controller = opened(frame)
     predictor = controller._workbench.predictor(controller.study)
@@ -358,3 +395,113 @@ def test_a_hypothesis_is_not_put_into_the_model(frame):
     ):
         accepted_entries(found, predictor)
     assert [acceptable(names) for names in (found["effects"], (), ("local_mass",))] == [False, False, True]
+
+
+def test_the_stability_of_poles_compares_poles_with_the_order_below() -> None:
+    """Poles of two references moved by known parts."""
+    hertz = np.array([100.0, 200.0, 300.0, 400.0, 500.0])
+    moved = hertz * np.array([1.001, 1.001, 1.001, 1.001, 1.05])
+    damping, later = np.full(5, 0.01), np.array([0.0101, 0.0101, 0.02, 0.02, 0.01])
+    poles = [2 * np.pi * f * (-z + 1j * np.sqrt(1 - z**2)) for f, z in ((hertz, damping), (moved, later))]
+    first = np.tile([1.0, 0.0], (5, 1)).astype(complex)
+    second = first.copy()
+    second[[1, 3]] = [0.0, 1.0]
+    chart = StabilisationChart(
+        np.array([2, 4]),
+        np.repeat([0, 1], 5),
+        np.concatenate(poles),
+        np.concatenate([first, second]),
+        np.arange(10),
+        (50.0, 600.0),
+    )
+    assert "".join(pole_stability(chart)) == "ooooo" + "sdvfo"
+
+
+def test_the_other_frfs_of_a_force_are_those_of_the_test(beam: Path) -> None:
+    controller = opened(beam)
+    page = controller.hits()
+    found = controller.others(0)
+    assert [one["name"] for one in found["curves"]] == [
+        name for name in page["frfs"] if name != page["frfs"][0]
+    ]
+    assert {len(one["magnitude"]) for one in found["curves"]} == {len(found["x"])}
+    with pytest.raises(InputError):
+        controller.others(99)
+
+
+def test_lines_join_the_neighbours_of_a_grid_and_leave_a_hole_open() -> None:
+    """Three rows of four points in any order, one of them missing."""
+    grid = np.array([[x, y, 0.0] for y in (0.0, 0.1, 0.2) for x in (0.0, 0.1, 0.2, 0.3)])
+    points = grid[np.random.default_rng(3).permutation(12)]
+    joined = {frozenset((tuple(points[a]), tuple(points[b]))) for a, b in grid_lines(points)}
+    assert len(joined) == 3 * 3 + 4 * 2
+    assert all(np.isclose(np.linalg.norm(np.subtract(*one)), 0.1) for one in joined)
+    wide = np.array([[x, 0.0, 0.0] for x in (0.0, 0.1, 0.2, 0.9, 1.0)])
+    assert grid_lines(wide) == [(0, 1), (1, 2), (3, 4)]
+    assert grid_lines(np.zeros((3, 3))) == []
+    assert grid_lines(np.zeros((0, 3))) == []
+
+
+def test_lines_drawn_by_hand_reach_shapes_exports_and_the_report(beam: Path, tmp_path: Path) -> None:
+    controller = opened(beam)
+    page = plain(controller.shapes())
+    drawn = [[page["nodes"][i] for i in pair] for pair in page["lines"]]
+    assert len(drawn) > 1 and not page["stated"]
+    a, b = drawn[0][0], drawn[-1][1]
+    controller.act("join", {"points": [b, a], "drawn": drawn})
+    joined = plain(controller.shapes())
+    assert joined["stated"] and joined["lines_from"] == "file"
+    after = [[joined["nodes"][i] for i in pair] for pair in joined["lines"]]
+    assert after == [sorted(pair) for pair in drawn] + [sorted((a, b))]
+    folder = Path(controller.export()["folder"])
+    for name in ("modes.uff", "frfs.uff"):
+        lines = read_uff(folder / name).geometry.lines
+        assert sorted(lines.tolist()) == sorted(after), name
+    session = open_study(read_study(folder / "study.toml"), with_baseline=False)
+    parts = shapes_section(modal_of(session), session).shown
+    report = plain(next(part for part in parts if isinstance(part, Moving)).page)
+    assert sorted(sorted(report["nodes"][i] for i in pair) for pair in report["lines"]) == sorted(after)
+    controller.act("join", {"points": [a, b], "drawn": after})
+    assert [[page["nodes"][i] for i in pair] for pair in plain(controller.shapes())["lines"]] == [
+        sorted(pair) for pair in drawn
+    ]
+    controller.act("set", {"path": ["test", "lines"], "value": ""})
+    assert plain(controller.shapes()) == page
+
+
+@pytest.mark.parametrize(
+    ("points", "drawn", "message"),
+    [
+        ([1, 1], [[1, 2]], "point 1 cannot be joined with itself"),
+        ([1, 99], [[1, 2]], "lines name point 99, which has no place"),
+        ([1, 2], [[1, 2]], "this is the last line"),
+        ([1, "x"], [[1, 2]], "cannot be made"),
+    ],
+)
+def test_a_line_that_cannot_be_drawn_is_refused(
+    beam: Path, points: list[Any], drawn: list[list[int]], message: str
+) -> None:
+    controller = opened(beam)
+    before = plain(controller.shapes())
+    with pytest.raises(ModalkitError, match=message):
+        controller.act("join", {"points": points, "drawn": drawn})
+    assert plain(controller.shapes()) == before
+
+
+def test_stated_places_reach_shapes_and_exports(faint: Path) -> None:
+    """A file without coordinates: points on a grid of two rows as the study places them."""
+    controller = opened(faint)
+    before = controller.shapes()
+    assert not before["placed"]
+    assert "places" in before["why"]
+    places = {str(i + 1): [0.1 * (i % 3), 0.2 * (i // 3), 0.0] for i in range(6)}
+    controller.act("set", {"path": ["test", "places"], "value": places})
+    page = controller.shapes()
+    assert page["placed"]
+    assert page["lines_from"] == "grid"
+    assert len(page["lines"]) == 2 * 2 + 3
+    assert len(page["faces"]) == 2
+    folder = Path(controller.export()["folder"])
+    for name in ("modes.uff", "frfs.uff"):
+        geometry = read_uff(folder / name).geometry
+        assert geometry.at([5])[0].tolist() == pytest.approx(places["5"])

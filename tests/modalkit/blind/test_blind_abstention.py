@@ -92,6 +92,7 @@ def test_a_false_name_takes_no_part_in_the_merit_of_a_true_one() -> None:
     assert not result.trials["first"].any() and not curve_of(result, KNOWN).points["right"].any()
 
 
+@pytest.mark.long
 def test_waiting_longer_pays_where_probabilities_are_honest() -> None:
     result = score(honest_run(1200, 11))
     least = curve_of(result, KNOWN).points.iloc[-1]

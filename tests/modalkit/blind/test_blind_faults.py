@@ -11,9 +11,9 @@ from acquisition import estimate_frfs
 from modalkit.blind.trial import draw_trial
 from modalkit.simulator.conduct import Conduct
 from modalkit.simulator.drawing.ranges import DrawRanges
-from modalkit.simulator.measurement import bad_hits, hit_points, measure
+from modalkit.simulator.measurement import bad_hits, measure
 from modalkit.simulator.scene import Scene, draw_scene, nominal_scene
-from modalkit.simulator.setup import Setup
+from modalkit.simulator.setup import Setup, hit_points
 
 
 def plain() -> Setup:
@@ -90,6 +90,7 @@ def test_drift_moves_the_peaks_from_point_to_point() -> None:
     assert (tops[-1] - tops[0]) / first == pytest.approx(0.05 * (1 - 1 / len(tops)), abs=0.02 + resolution)
 
 
+@pytest.mark.long
 def test_levels_reach_the_records(monkeypatch: pytest.MonkeyPatch) -> None:
     """A joint that slips lowers the frequencies of hard hits, in the records themselves."""
     monkeypatch.setattr("modalkit.simulator.measurement.draw_conduct", lambda points, rng: Conduct())

@@ -35,6 +35,7 @@ def test_trials_repeat_and_differ() -> None:
     assert one.scene.setup not in (other.scene.setup, seed.scene.setup)
 
 
+@pytest.mark.long
 def test_truth_survives_json() -> None:
     for index in range(12):
         truth = draw_trial(3, index, plan=replace(BEAMS, leave_out=index % 2 == 0)).truth
@@ -218,6 +219,7 @@ def plates() -> list[Trial]:
     return [draw_trial(14, index, plan=PLATES) for index in range(4)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("index", range(4))
 def test_plates_are_stated_thin_and_hit_inside(plates: list[Trial], index: int) -> None:
     trial = plates[index]

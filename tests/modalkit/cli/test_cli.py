@@ -53,6 +53,7 @@ def test_identify_finds_the_published_frequencies(run: Run, tmp_path: Path) -> N
     assert len(record["hits"]) == 75
 
 
+@pytest.mark.long
 def test_frf_writes_what_identify_reads_alike(run: Run, tmp_path: Path) -> None:
     target, first, second = (tmp_path / n for n in ("frf.uff", "a.json", "b.json"))
     assert run("frf", beam(), "-o", target)[0] == 0
@@ -70,6 +71,7 @@ def test_inspect_tells_the_band_of_the_force(run: Run) -> None:
     assert "10 dB down at" in line and "20 dB down at" in line
 
 
+@pytest.mark.long
 def test_a_sensor_and_an_estimator_in_small_letters_are_taken(run: Run, tmp_path: Path) -> None:
     plain, light = tmp_path / "a.uff", tmp_path / "b.uff"
     assert run("frf", beam(), "-o", plain)[0] == 0
@@ -104,8 +106,9 @@ def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
     assert answer == ["Cause", "Where", "Closes", "Sure", "Next"]
     record = json.loads(target.read_text())
     assert not departures(record, DiagnosisDocument)
-    assert record["cause"]["verdict"] == "named"
-    assert record["cause"]["sets"] == [["fluid_added_mass"]]
+    # how much of a wall the clamp is, is not stated: three frequencies leave a second cause beside the water possible
+    assert record["cause"]["verdict"] == "class"
+    assert all("fluid_added_mass" in one for one in record["cause"]["sets"])
     assert record["cause"]["ranking"][0]["effects"] == ["fluid_added_mass"]
     assert record["where"]["channel"] == "mass"
     assert (figures / "diagnosis.png").stat().st_size > 10_000

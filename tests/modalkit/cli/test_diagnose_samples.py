@@ -29,18 +29,24 @@ def sample(name: str) -> Diagnosis:
     return answer(SAMPLES / name)
 
 
-def test_shear_is_named_on_a_measured_beam(shared_data: Callable[[str], Path]) -> None:
+def test_shear_is_named_on_a_measured_beam_beside_a_point_of_another_gain(
+    shared_data: Callable[[str], Path],
+) -> None:
+    """The constants of point 4 are 0.85 of the others' in each of the four modes, 0.80 to 0.75 beside 0.9 to 1.04."""
     found = answer(shared_data("frf/ModeLAB/study.toml"))
     assert len(found.gap.modes) >= 4
-    assert (found.verdict, found.sets) == ("named", (("shear",),))
-    assert found.ranking[0].p_value > 0.05
+    assert (found.verdict, found.sets) == ("named", (("channel_gain", "shear"),))
+    best, alone = found.ranking[0], next(row for row in found.ranking if row.effects == ("shear",))
+    assert best.p_value > 0.05
+    assert alone.p_value < 1e-3
+    assert best.parameters["channel_gain.points"].value == (4,)
+    assert best.parameters["channel_gain.gain"].value == pytest.approx(0.85, abs=0.03)
     shrink = found.shrink
     assert shrink.metric == "frequency"
     assert shrink.closed is not None
     assert shrink.closed.value > 95
     assert shrink.held_after < 0.05 * shrink.held_before
-    assert shrink.held_runner_up is not None
-    assert shrink.held_after < 0.5 * min(shrink.held_runner_up, shrink.held_nuisance)
+    assert shrink.held_after < 0.5 * shrink.held_nuisance  # shear alone closes as much
 
 
 def test_published_damping_shows_a_patch_or_what_looks_alike() -> None:

@@ -59,6 +59,7 @@ def test_commands_run_nothing_of_the_current_folder(folder: Path) -> None:
     assert (folder / "effects.json").exists()
 
 
+@pytest.mark.long
 def test_started_as_a_module_only_what_the_interpreter_needs_to_start_it_can_be_mistaken(
     folder: Path,
 ) -> None:
@@ -90,6 +91,7 @@ def test_a_warm_process_runs_nothing_of_the_current_folder(
     assert not (folder / MARK).exists()
 
 
+@pytest.mark.long
 def test_the_diagnosis_of_a_real_structure_runs_nothing_beside_its_study(folder: Path) -> None:
     with warm_pool(1) as ask, pytest.raises(EstimationError, match=r"no\.toml: cannot be opened"):
         diagnose_together_by(ask)([folder / "no.toml"], (), ())

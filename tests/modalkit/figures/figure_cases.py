@@ -11,16 +11,10 @@ import pandas as pd
 from acquisition import Dof, FrfSet, Geometry, HammerTest, Hits, HitVerdict
 from identification import ModalModel, identify
 from updating import Case, Diagnosis, Material, Measured, Predictor, Spec, Tolerances
-from updating.diagnosis.answer.result import (
-    Closed,
-    Gap,
-    NextTest,
-    ParameterEstimate,
-    Ranked,
-    Shrink,
-    Where,
-    Zone,
-)
+from updating.diagnosis.answer.closing import Closed, Shrink
+from updating.diagnosis.answer.located import Where, Zone
+from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
+from updating.diagnosis.answer.result import Gap, NextTest
 from updating.models.state import State
 
 

@@ -47,6 +47,7 @@ def test_text_is_broken_and_shortened_to_its_room(text: str, room: float) -> Non
     assert text_width(shortened(text, room, 11), 11) <= room
 
 
+@pytest.mark.long
 @given(st.floats(20, 400))
 def test_a_number_and_its_unit_stay_on_one_line(room: float) -> None:
     text = "Mass of the sensor 12.5 g (11.9 to 13.1), density 998 kg/m^3 at 3 %, modes 3 5 7"

@@ -56,6 +56,7 @@ def test_blind_confusion_shares_classes_and_gathers_pairs() -> None:
     assert "4 of 6 blind trials answered truly" in words(figure)
 
 
+@pytest.mark.long
 def test_blind_curves_show_what_they_are_given() -> None:
     result = score(honest_run(300, 8))
     figures = blind_figures(result)

@@ -15,7 +15,7 @@ from modalkit.figures import diagnosis_figure
 from modalkit.figures.charts import gap_figure
 from modalkit.output.words import answer
 from modalkit.views.mode_errors import ModeErrors, mode_errors
-from updating.diagnosis.answer.result import ParameterEstimate, Ranked
+from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
 from updating.problem.width import stiffening
 
 
@@ -51,6 +51,7 @@ def test_diagnosis_is_legible_wherever_the_cause_sits(
     assert_legible(diagnosis_figure(diagnosis_of(kind, verdict=verdict, first=first, place=place, sets=sets)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["beam", "plate"])
 def test_diagnosis_with_its_case_shows_points_and_sensor(kind: str) -> None:
     case = case_of(kind, factor=0.9)

@@ -17,7 +17,7 @@ from modalkit.figures import localisation_figure, shapes_figure
 from modalkit.figures.diagnosis.structure import probabilities
 from modalkit.figures.space import View
 from modalkit.views.mesh import mesh_of
-from updating.diagnosis.answer.result import Zone
+from updating.diagnosis.answer.located import Zone
 from updating.nominal import predictor_of
 
 

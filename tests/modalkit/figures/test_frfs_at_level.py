@@ -17,6 +17,7 @@ from updating.diagnosis.diagnose import pose
 from updating.models.state import State
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", FORMS)
 def test_a_shift_of_all_frequencies_is_a_modulus_times_its_square(form) -> None:
     """Stiffness times s^2 and the same damping ratios: every resonance is s times as high, as Rayleigh has it."""

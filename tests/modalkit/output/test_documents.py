@@ -25,7 +25,8 @@ from modalkit.output.whole import plain, write_json, write_text
 from modalkit.study.read import read_study
 from modalkit.workflow.case import process
 from updating import Axes, Case, Diagnosis, Material, Measured, Spec, diagnose, measured_from_modes
-from updating.diagnosis.answer.result import Closed, NextTest
+from updating.diagnosis.answer.closing import Closed
+from updating.diagnosis.answer.result import NextTest
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry" / "study.toml"
 MODES = {"schema", "modes", "points_rejected", "hits", "window_decay_removed", "warnings"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from modalkit.output.forms import numbers_a_form
-from updating.diagnosis.answer.result import ParameterEstimate
+from updating.diagnosis.answer.ranked import ParameterEstimate
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,8 @@ from conforming import departures
 
 from modalkit.output.schemas import DOCUMENTS
 from modalkit.output.schemas.correlation import NumberedMode
-from modalkit.output.schemas.diagnosis import NextTestEntry
+from modalkit.output.schemas.diagnosis import SOMETHING_ELSE, NextTestEntry
+from updating.diagnosis.answer import in_no_library
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "docs" / "_ext"))
@@ -80,3 +81,7 @@ def test_a_departure_from_what_is_declared_is_found(value: Any, kind: type, wher
     found = departures(value, kind)
     assert len(found) == len(where)
     assert all(one.startswith(start) for one, start in zip(found, where, strict=True))
+
+
+def test_a_cause_in_no_library_has_one_name() -> None:
+    assert in_no_library.SOMETHING_ELSE == SOMETHING_ELSE

@@ -14,18 +14,10 @@ import pytest
 
 from modalkit.output.summary import searched_text, separated, summary_text
 from updating import LIBRARY, Diagnosis
-from updating.diagnosis.answer.result import (
-    Closed,
-    Gap,
-    NextTest,
-    ParameterEstimate,
-    Ranked,
-    Remainder,
-    Shortcoming,
-    Shrink,
-    Where,
-    Zone,
-)
+from updating.diagnosis.answer.closing import Closed, Remainder, Shrink
+from updating.diagnosis.answer.located import Where, Zone
+from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
+from updating.diagnosis.answer.result import Gap, NextTest, Shortcoming
 from updating.diagnosis.search.search import Searched
 
 HEADS = ["Cause", "Where", "Closes", "Sure", "Next"]
@@ -283,8 +275,8 @@ def test_the_unknown_is_not_dressed_up() -> None:
 def test_no_gap_needs_nothing() -> None:
     found = lines(NONE)
     assert numbers(found["Where"]) == []
-    assert numbers(found["Closes"]) == ["5 %", "0.05 %"]  # what there is, and the noise
-    assert numbers(found["Sure"]) == ["0.4"]
+    assert numbers(found["Closes"]) == ["5 %"]  # what there is, with no misfit beside a chance of one
+    assert numbers(found["Sure"])[-1] == "0.4" and "probable that there is no cause" in found["Sure"]
     assert numbers(found["Next"]) == []
 
 

@@ -163,6 +163,7 @@ def test_what_does_not_exist_is_refused(made: list[PaperTable]) -> None:
         render(made, "html")  # type: ignore[arg-type]
 
 
+@pytest.mark.long
 def test_the_update_becomes_a_record_of_the_contract() -> None:
     table = TABLES[0]
     walked = walk(table, table.models[1], open_test(table, sample_folder()))

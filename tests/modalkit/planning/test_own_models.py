@@ -313,11 +313,9 @@ def test_a_change_that_makes_the_test_worse_is_not_offered(chained: Forecast) ->
     trade = replace(best, worth=0.1, factor=0.8, separates=(("E", "density"),))
     found = replace(chained, advice=(best, trade, worse))
     assert offered(found) == [best, trade]
-    assert brings(trade) == "E from density; the severities it separates become 1.25 times larger"
+    assert brings(trade) == "E from density; separable severities become 1.25 times larger"
     assert not brings(replace(best, separates=(), factor=1.0))
-    assert note(replace(found, advice=(trade,)))[-1].endswith(
-        "the severities it separates become 1.2 times larger."
-    )
+    assert note(replace(found, advice=(trade,)))[-1].endswith("separable severities become 1.2 times larger.")
 
 
 PLATE = """

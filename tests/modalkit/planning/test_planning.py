@@ -119,6 +119,7 @@ def test_whitened_data_of_specimens_inside_their_tolerances_have_unit_variance(b
     assert len(bench.columns(design)) == 3
 
 
+@pytest.mark.long
 def test_a_modulus_is_seen_where_the_common_doubt_of_the_frequencies_says(
     curves: tuple[Curve, ...], bench: OwnBench
 ) -> None:
@@ -232,6 +233,7 @@ def test_advice_is_ordered_and_names_only_pairs_that_it_turns(sample: Forecast) 
                 assert (a, b) not in EQUAL
 
 
+@pytest.mark.long
 def test_every_change_is_followed(sample: Forecast) -> None:
     bench = sample.bench
     assert isinstance(bench, OwnBench)
@@ -283,6 +285,7 @@ def test_modes_alone_are_taken_as_frequencies_alone() -> None:
     assert not names & {"fluid_added_mass", "fluid_damping", "calibration_gain", "position_error"}
 
 
+@pytest.mark.long
 def test_what_a_study_does_not_state_of_a_fluid_is_left_open(tmp_path: Path) -> None:
     """Near and far surface and bottom are forms of the fluid; the stated ones are where they are."""
     for more, forms in (

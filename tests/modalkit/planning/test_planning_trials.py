@@ -66,6 +66,7 @@ def hidden(case: Case) -> list[tuple[str, dict[str, object]]]:
     return [(case.family.cause, dict(case.values))]
 
 
+@pytest.mark.long
 def test_the_data_of_a_case_say_nothing_of_what_is_hidden(
     bench: OwnBench, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:

@@ -7,6 +7,7 @@ import hashlib
 import json
 import re
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from html.parser import HTMLParser
@@ -16,29 +17,33 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from figure_cases import case_of
+from figure_cases import case_of, model_of
 from figure_text import assert_legible
 from test_localisation_figure import diagnosis_with
 
 from acquisition import Dof, FrfSet, InputError
 from modalkit.cli import main
 from modalkit.figures.diagnosis.all import Drawing, drawings
+from modalkit.output.names import in_words
 from modalkit.output.summary import summary_text
-from modalkit.report import diagnosis_report, write_report
+from modalkit.report import Document, diagnosis_report, write_report
 from modalkit.report.html import Column, element, table, text
-from modalkit.report.place import BEGIN
+from modalkit.report.page import page as html
 from modalkit.report.provenance import fingerprint
+from modalkit.report.sections import the_causes
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.fitted import fitted
 from modalkit.workflow.overlaid import LINES, selected_lines
 from updating import Diagnosis
-from updating.diagnosis.answer.result import Gap, HeldPoints, ParameterEstimate, Ranked, Shrink
+from updating.diagnosis.answer.closing import HeldPoints, Shrink
+from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
+from updating.diagnosis.answer.result import Gap
 from updating.effects import Lack, Obstacle
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 ROOT = Path(__file__).resolve().parents[3]
-VOID = {"meta", "br"}
+VOID = {"meta", "br", "img"}
 SCRIPTS = {"style", "script"}
 
 
@@ -101,14 +106,19 @@ def complete(diagnosis: Diagnosis, title: str = "A case") -> Diagnosis:
     return replace(diagnosis, title=title, gap=gap, not_examined=out, warnings=("mind the <gap>",))
 
 
+def diagnosis_page(diagnosis: Diagnosis, sessions: Sequence[Session], *, when: datetime) -> str:
+    """Return the report of a diagnosis as HTML."""
+    return html(diagnosis_report(diagnosis, sessions, when=when))
+
+
 @pytest.mark.parametrize("kind", ["beam", "plate"])
 @pytest.mark.parametrize("verdict", ["named", "class", "unknown", "none"])
 def test_every_verdict_has_a_report(kind: str, verdict: str, tmp_path: Path) -> None:
     diagnosis = complete(diagnosis_with(kind, verdict))
-    page = diagnosis_report(diagnosis, [session_of(kind, tmp_path)], when=NOON)
+    page = diagnosis_page(diagnosis, [session_of(kind, tmp_path)], when=NOON)
     read = Reader(page)
     for line in summary_text(diagnosis):
-        assert " ".join(line.partition(":")[2].split()) in read.text
+        assert " ".join(in_words(line.partition(":")[2]).split()) in read.text
     for message in (
         "mind the <gap>",
         "a warning <of> the session",
@@ -136,7 +146,7 @@ def markup_of(page: str) -> str:
 
 
 def test_a_report_needs_no_network_and_is_small(tmp_path: Path) -> None:
-    page = diagnosis_report(
+    page = diagnosis_page(
         complete(diagnosis_with("beam", "named")), [session_of("beam", tmp_path)], when=NOON
     )
     assert "http" not in markup_of(page).replace("http-equiv", "")
@@ -148,7 +158,7 @@ def test_a_report_needs_no_network_and_is_small(tmp_path: Path) -> None:
 
 
 def test_the_policy_of_a_page_knows_its_one_script(tmp_path: Path) -> None:
-    page = diagnosis_report(
+    page = diagnosis_page(
         complete(diagnosis_with("beam", "named")), [session_of("beam", tmp_path)], when=NOON
     )
     (policy,) = (a["content"] or "" for _, a in Reader(page).tags if a.get("http-equiv"))
@@ -158,8 +168,9 @@ def test_the_policy_of_a_page_knows_its_one_script(tmp_path: Path) -> None:
     assert policy.startswith("default-src 'none';") and "unsafe-eval" not in policy
 
 
+@pytest.mark.long
 def test_every_figure_has_its_place_its_words_and_its_data(tmp_path: Path) -> None:
-    page = diagnosis_report(
+    page = diagnosis_page(
         complete(diagnosis_with("plate", "named")), [session_of("plate", tmp_path)], when=NOON
     )
     figures = [a for tag, a in Reader(page).tags if tag == "figure"]
@@ -174,7 +185,7 @@ def test_every_figure_has_its_place_its_words_and_its_data(tmp_path: Path) -> No
 def test_text_of_the_user_stays_text(tmp_path: Path) -> None:
     title = "<script>alert('1')</script> & \u201cquoted\u201d $x^2$"
     session = session_of("beam", tmp_path, title=title)
-    page = diagnosis_report(complete(diagnosis_with("beam", "named"), title), [session], when=NOON)
+    page = diagnosis_page(complete(diagnosis_with("beam", "named"), title), [session], when=NOON)
     read = Reader(page)
     assert [a for tag, a in read.tags if tag == "script" and not a] == [{}]  # our own, and no other
     assert title not in page
@@ -182,7 +193,7 @@ def test_text_of_the_user_stays_text(tmp_path: Path) -> None:
 
 
 def test_tables_can_be_reached_and_read_aloud(tmp_path: Path) -> None:
-    page = diagnosis_report(
+    page = diagnosis_page(
         complete(diagnosis_with("beam", "named")), [session_of("beam", tmp_path)], when=NOON
     )
     tags = [tag for tag, _ in Reader(page).tags]
@@ -203,9 +214,9 @@ def test_the_answer_is_marked_with_its_interval(tmp_path: Path) -> None:
     )
     made = complete(diagnosis_with("beam", "named"))
     stated = replace(made, ranking=(row, *made.ranking[1:]), sets=(("sensor_mass",),))
-    page = diagnosis_report(stated, [session_of("beam", tmp_path)], when=NOON)
+    page = diagnosis_page(stated, [session_of("beam", tmp_path)], when=NOON)
     marked = re.findall(r'<tr class="answer-row">.*?</tr>', page, flags=re.DOTALL)
-    assert any("mass = 12.1 g (11.5 to 12.6)" in r and "97 %" in r and "lumped_mass" in r for r in marked)
+    assert any("mass 12.1 g (11.5 to 12.6)" in r and "97 %" in r and "lumped mass" in r for r in marked)
 
 
 def test_errors_of_all_data_are_told_in_standard_deviations(tmp_path: Path) -> None:
@@ -224,7 +235,7 @@ def test_errors_of_all_data_are_told_in_standard_deviations(tmp_path: Path) -> N
         points=HeldPoints(40.0, 3.0, 20.0),
     )
     text = Reader(
-        diagnosis_report(replace(made, shrink=shrink), [session_of("beam", tmp_path)], when=NOON)
+        diagnosis_page(replace(made, shrink=shrink), [session_of("beam", tmp_path)], when=NOON)
     ).text
     assert "25 sigma" in text and "1.5 sigma" in text
     assert "40 % before, 3 % after, 20 % with the tolerances alone" in text
@@ -232,12 +243,12 @@ def test_errors_of_all_data_are_told_in_standard_deviations(tmp_path: Path) -> N
 
 def test_provenance_tells_files_and_text(tmp_path: Path) -> None:
     session = session_of("beam", tmp_path)
-    text = Reader(diagnosis_report(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
+    text = Reader(diagnosis_page(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
     for name in ("study.toml", "modes.csv"):
         assert hashlib.sha256((tmp_path / name).read_bytes()).hexdigest() in text
     assert 'modes = "modes.csv"' in text
     (tmp_path / "modes.csv").unlink()
-    text = Reader(diagnosis_report(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
+    text = Reader(diagnosis_page(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
     assert "not there any more" in text
 
 
@@ -251,6 +262,7 @@ def drawn(kind: str, verdict: str, folder: Path, metric: str = "frequency") -> d
     return drawings(replace(made, shrink=replace(made.shrink, metric=metric)), [session_of(kind, folder)])  # type: ignore[arg-type]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["beam", "plate"])
 @pytest.mark.parametrize("metric", ["frequency", "frf", "combined"])
 @pytest.mark.parametrize("verdict", ["named", "unknown", "none"])
@@ -279,7 +291,7 @@ def test_several_specimens_have_a_gap_each(tmp_path: Path) -> None:
     made = complete(replace(diagnosis_with("beam", "named"), ranking=(row,), sets=(row.effects,)), "first")
     modes = pd.concat([made.gap.modes, made.gap.modes.assign(study="second")])
     stated = replace(made, gap=replace(made.gap, modes=modes))
-    read = Reader(diagnosis_report(stated, sessions, when=NOON))
+    read = Reader(diagnosis_page(stated, sessions, when=NOON))
     assert "first: modes of the test" in read.text and "second: modes of the test" in read.text
     assert "those of the first study, first" in read.text
     assert {"gap-title", "gap-2-title"} <= set(read.values("id"))
@@ -306,7 +318,7 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
         p_value=0.4,
     )
     stated = complete(replace(made, ranking=(row,), sets=(row.effects,)), session.case.title)
-    page = diagnosis_report(stated, [session], when=NOON)
+    page = diagnosis_page(stated, [session], when=NOON)
     found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)
     assert found is not None
     # the fit leaves 0.4 % in the frequencies: of resonances with 0.1 to 0.6 % of damping, 1 / (1 + (0.4 / 2 zeta)^2)
@@ -317,17 +329,21 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
         assert_legible(drawing.figure)
 
 
+def titled(title: str) -> Document:
+    return Document(title, "test", element("h1", title))
+
+
 def test_a_report_stands_over_no_other_file(tmp_path: Path) -> None:
     study, report = tmp_path / "study.toml", tmp_path / "out.html"
     study.write_text("title = 'mine'\n")
     with pytest.raises(InputError, match="not a report written by modalkit"):
-        write_report(study, BEGIN)
+        write_report(study, titled("mine"))
     assert study.read_text() == "title = 'mine'\n"
     with pytest.raises(InputError, match="no such folder"):
-        write_report(tmp_path / "nowhere" / "out.html", BEGIN)
-    write_report(report, f"{BEGIN}\nfirst")
-    write_report(report, f"{BEGIN}\nsecond")
-    assert report.read_text().endswith("second")
+        write_report(tmp_path / "nowhere" / "out.html", titled("lost"))
+    write_report(report, titled("first"))
+    write_report(report, titled("second"))
+    assert "<title>second: test</title>" in report.read_text()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out.html", "study.toml"]
 
 
@@ -386,3 +402,31 @@ def test_no_line_ends_within_an_arrow_or_a_power_of_ten() -> None:
         '2 <span class="one">-&gt;</span> 1 with p &lt; <span class="one">1e-300</span>'
     )
     assert text("node-3 at e-9") == "node-3 at e-9"
+
+
+def test_a_cover_line_states_what_who_and_when(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made, session = complete(diagnosis_with("beam", "named")), session_of("beam", tmp_path)
+    monkeypatch.delenv("MODALKIT_AUTHOR", raising=False)
+    nobody = Reader(diagnosis_page(made, [session], when=NOON)).text
+    what = "Diagnosis of the gap between test and model (study.toml)"
+    assert f"{what} · 1 March 2026 · modalkit" in nobody
+    monkeypatch.setenv("MODALKIT_AUTHOR", "B. Second")
+    assert f"{what} · B. Second · 1 March 2026" in Reader(diagnosis_page(made, [session], when=NOON)).text
+    signed = replace(session, study=session.study.model_copy(update={"author": "A. First"}))
+    assert f"{what} · A. First · 1 March 2026" in Reader(diagnosis_page(made, [signed], when=NOON)).text
+
+
+def test_without_a_gap_no_cause_is_the_marked_row() -> None:
+    rows = re.findall(
+        r"<tr[^>]*>.*?</tr>", the_causes(complete(diagnosis_with("beam", "none"))).markup, re.DOTALL
+    )
+    marked = [row for row in rows if "answer-row" in row]
+    assert len(marked) == 1 and "no cause: tolerances and noise alone" in marked[0]
+    assert rows.index(marked[0]) == 1  # behind the heading
+
+
+def test_shapes_are_a_picture_on_paper() -> None:
+    page = model_of(3).animate().page
+    assert re.search(r'<img class="paper" alt="[^"]+" src="data:image/png;base64,iVBOR', page)
+    style = page[page.index("@media print") : page.index("</style>")]
+    assert ".space, .screen { display: none; }" in style and ".paper { display: block;" in style

@@ -20,7 +20,7 @@ from glider import make_glider
 from test_localisation_figure import diagnosis_with
 from test_report import complete
 
-from modalkit.report import Basis, diagnosis_report, identification_report
+from modalkit.report import Basis, diagnosis_report, identification_report, page
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from modalkit.workflow.identification import read
@@ -65,8 +65,8 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         )
     own = open_study(folder / "glider" / "study.toml")
     pages["standing"] = diagnosis_report(complete(diagnosis_with("beam", "none")), [own], when=NOON)
-    for name, page in pages.items():
-        (folder / f"{name}.html").write_text(page, encoding="utf-8")
+    for name, document in pages.items():
+        (folder / f"{name}.html").write_text(page(document), encoding="utf-8")
     return {name: folder / f"{name}.html" for name in pages}
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from test_report import Reader, data_of
 
+from acquisition.quantities import decimals
 from modalkit.cli import main
 
 BEAM = Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry"
@@ -34,14 +35,17 @@ def test_identify_reports_modes_of_studies_files_and_tables(call: Call, tmp_path
     code, out, error = call("identify", BEAM / source, "--report", page, "--json", record)
     assert (code, f"report: {page}" in out) == (0, True), error
     read = Reader(page.read_text(encoding="utf-8"))
-    for mode in json.loads(record.read_text(encoding="utf-8"))["modes"]:
-        assert f"{mode['frequency_hz']:.4f}" in read.text
+    modes = json.loads(record.read_text(encoding="utf-8"))["modes"]
+    digits = max(decimals(mode["frequency_sigma_hz"]) or 0 for mode in modes)
+    for mode in modes:
+        assert f"{mode['frequency_hz']:.{digits}f}" in read.text
     assert f"modalkit identify {BEAM / source} --report {page}" in read.text
     names = {chart["name"] for chart in data_of(page.read_text(encoding="utf-8"))["charts"]}
     assert ("poles" in names) is (source != "modes.csv")
     assert ("mac" in names) is (source == "study.toml")
 
 
+@pytest.mark.long
 def test_modes_named_by_hand_are_so_in_report_and_figure(call: Call, tmp_path: Path) -> None:
     page = tmp_path / "modes.html"
     code, _, error = call("identify", BEAM / "study.toml", "--drop", "154", "--report", page)
@@ -50,6 +54,7 @@ def test_modes_named_by_hand_are_so_in_report_and_figure(call: Call, tmp_path: P
     assert "dropped by hand" in {one["name"] for one in charts["poles"]["series"]}
 
 
+@pytest.mark.long
 def test_update_reports_what_it_prints(call: Call, tmp_path: Path) -> None:
     page, record = tmp_path / "update.html", tmp_path / "update.json"
     code, out, error = call("update", BEAM / "study.toml", "--report", page, "--json", record)

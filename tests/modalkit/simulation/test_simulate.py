@@ -140,6 +140,7 @@ def test_an_unknown_window_and_gain_are_in_the_data_and_not_stated(tmp_path: Pat
     assert ratio == pytest.approx(np.full(3, 1.2), rel=0.01)
 
 
+@pytest.mark.long
 def test_frfs_come_with_coherence_and_fewer_bytes(run: Run, tmp_path: Path) -> None:
     target = tmp_path / "frfs.uff"
     assert run("simulate", STUDY, "--hits", "4", "--frfs", "-o", target)[0] == 0
@@ -263,6 +264,7 @@ def test_a_wrong_effect_is_one_line_and_no_file(run: Run, tmp_path: Path, effect
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.long
 def test_what_does_not_apply_is_refused(tmp_path: Path) -> None:
     free = read_study(study_of(tmp_path, "", clamped="[]"))
     with pytest.raises(StudyError, match="no clamped edge"):
@@ -359,6 +361,7 @@ def test_every_effect_can_be_simulated_and_acts_as_in_a_prediction(tmp_path: Pat
     assert found == pytest.approx(wanted, rel=2e-3 if damped else 1e-6)
 
 
+@pytest.mark.long
 def test_the_rig_of_averaged_frfs_has_their_lines_averages_and_noise(tmp_path: Path) -> None:
     stated = Options(hits=8, noise=2e-3)
     first = simulate_test(read_study(STUDY), seed=2, options=stated)

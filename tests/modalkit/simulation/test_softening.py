@@ -11,7 +11,8 @@ import pytest
 from acquisition import Dof, Geometry, UffContent, estimate_frfs, hammer_test, judge_hits
 from acquisition.synthetic import HammerPlan, ModalSystem, modal_system
 from identification import ModalModel
-from modalkit.workflow.identification import Judged, Processed
+from modalkit.workflow.judged_hits import Judged
+from modalkit.workflow.processed import Processed
 from modalkit.workflow.processing_options import ProcessingOptions
 from updating import Axes, Material, Predictor, Spec, measured_from_identified
 from updating.prediction.matching import pair_modes

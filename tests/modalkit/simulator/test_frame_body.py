@@ -109,6 +109,7 @@ def test_what_is_hidden_is_what_the_library_says_at_its_values(name: str, tmp_pa
     assert len(places) == 1
 
 
+@pytest.mark.long
 def test_a_trial_repeats_and_its_files_tell_nothing_of_what_is_hidden(tmp_path: Path) -> None:
     first, second = tmp_path / "a", tmp_path / "b"
     for folder in (first, second):

@@ -329,6 +329,7 @@ def test_joint_slope_is_the_mean_over_modes() -> None:
     assert np.all(shifts(after, before, 1e-6 * setup.peak) > -1e-6)
 
 
+@pytest.mark.long
 def test_levels_move_what_depends_on_them() -> None:
     for name in ("joint_nonlinearity", "breathing_crack"):
         scene = hide(name).scene

@@ -44,6 +44,7 @@ def test_bar_is_the_beam() -> None:
         assert np.abs(np.abs(read) - np.abs(known)).max() < 0.01 * np.abs(known).max()
 
 
+@pytest.mark.long
 @needs_ccx
 def test_bricks_have_converged_and_give_the_same_twice() -> None:
     fine, _ = replace(BAR, elements=(60, 2, 2)).real_modes(5)
@@ -178,6 +179,7 @@ def test_right_answer_closes_the_gap() -> None:
     assert shrinkage.beyond_after_percent < 0.2 * shrinkage.beyond_before_percent
 
 
+@pytest.mark.long
 @needs_ccx
 def test_solids_are_drawn_as_often_as_plates() -> None:
     rng = np.random.default_rng(3)

@@ -63,6 +63,7 @@ def studied(folder: Path, deck: list[str], *hypothesis: str) -> Path:
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("parameter", "low", "high", "value", "deck"),
     [

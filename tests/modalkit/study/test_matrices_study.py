@@ -101,7 +101,7 @@ def test_frequencies_that_have_nothing_in_common(tmp_path: Path, factor: float) 
     path.write_text('[test]\nmodes = "modes.csv"\n' + STUDY[STUDY.index("[model]") :])
     case = open_study(read_study(path)).case
     if factor == 3.0:
-        assert any("only their order pairs them" in warning for warning in correlate(case).warnings)
+        assert any("paired by their order alone" in warning for warning in correlate(case).warnings)
     else:
         for command in (correlate, update):
             with pytest.raises(EstimationError, match="no modes in common: the test's frequencies are"):

@@ -122,6 +122,7 @@ def test_an_update_ends_whatever_the_table(tmp_path: Path, keys: str, text: str)
     assert all(np.isfinite(p.value) for p in update_studies([session]).parameters)
 
 
+@pytest.mark.long
 def test_a_diagnosis_without_tolerances_ends(tmp_path: Path) -> None:
     none = "".join(f"{name} = 0.0\n" for name in ("E", "density", "thickness", "length", "width"))
     path = written(tmp_path, FIVE, study=STUDY + "[tolerances]\n" + none)

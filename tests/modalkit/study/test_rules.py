@@ -66,4 +66,4 @@ def test_a_diagnosis_is_decided_by_the_file_and_records_it(run: Run, tmp_path: P
         "effect_shows_gap": 1e6,
         "chance_of_a_fit": 1e-300,
     }
-    assert "rules of its own: significant_gap = 1e-300 (default: 0.005)" in out
+    assert "rules that differ from the defaults: significant_gap = 1e-300 (default: 0.005)" in out

@@ -280,3 +280,21 @@ def test_a_mass_in_millimetres_is_named_so(tmp_path: Path) -> None:
         study(tmp_path, text).spec()
     text = text.replace("[376]", '["376 mm"]')
     assert study(tmp_path, text).spec().masses == (PointMass((0.376,), 0.01),)
+
+
+def test_a_tolerance_may_be_free(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(WITH_UNITS.replace('E = "1 %"', 'E = "free"\ndensity = "1 %"'))
+    stated = read_study(path).doubts()
+    assert stated.free == {"E"}
+    assert stated.of("E", "E") == 0.0
+    assert stated.factors["E"] > 1.0
+    assert stated.factors["density"] == 0.01
+
+
+@pytest.mark.parametrize("value", ["1", "-0.1", '"open"'])
+def test_a_tolerance_is_a_share_or_free(tmp_path: Path, value: str) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(WITH_UNITS.replace('E = "1 %"', f"E = {value}"))
+    with pytest.raises(StudyError, match=r"tolerances.E: "):
+        read_study(path)

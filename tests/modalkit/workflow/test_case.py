@@ -238,6 +238,7 @@ def test_files_that_are_missing_or_hold_something_else_are_named(folder: Path) -
         open_study(read_study(study(folder, 'modes = "frfs.uff"')))
 
 
+@pytest.mark.long
 def test_a_study_takes_sensors_off(folder: Path) -> None:
     path = study(folder, 'files = ["hits.uff"]\nband = [10.0, 250.0]\nsensor_masses = { "3+Z" = 0.001 }')
     processed, light = process(read_study(path))

@@ -79,6 +79,7 @@ def test_an_frf_far_less_coherent_than_its_siblings_is_named_with_the_hit(tmp_pa
     assert not any("mean coherence" in w for w in read(path).warnings)
 
 
+@pytest.mark.long
 def test_an_unstated_window_is_shown_with_the_test_and_with_its_modes(tmp_path: Path) -> None:
     """It raises every damping, so it stands before what changes nothing, wherever a result shows itself."""
     path = tmp_path / "hits.uff"

@@ -88,6 +88,7 @@ def test_two_tests_are_compared_by_shape(tmp_path: Path) -> None:
         mk.mac(3)  # type: ignore[arg-type]
 
 
+@pytest.mark.long
 def test_a_study_reads_the_table_that_identify_writes(tmp_path: Path, run: Run) -> None:
     source = sample_file("beam_dry/study.toml")
     data = source.parent / "beam_dry.uff"
@@ -253,6 +254,7 @@ def test_what_has_no_figures_is_said() -> None:
         mk.draw(3)
 
 
+@pytest.mark.long
 def test_the_page_on_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     root = Path(__file__).resolve().parents[3]
     page = (root / "docs" / "howto" / "python.md").read_text(encoding="utf-8")

@@ -28,6 +28,7 @@ from modalkit.output.documents import modes_document
 from modalkit.workflow.files import read_files
 from modalkit.workflow.identification import read
 from modalkit.workflow.joining import together
+from modalkit.workflow.judged_hits import decided, proposed
 from modalkit.workflow.processing_options import ProcessingOptions, sensor_mass
 
 RATE, SAMPLES = 2048.0, 4096
@@ -89,17 +90,18 @@ def test_hits_of_several_tests_are_numbered_through(tmp_path: Path) -> None:
     weak = three()
     weak = replace(weak, points=(quieter(weak.points[0], 1, 0.02), *weak.points[1:]))
     other = replace(weak, rate=RATE, source="b")
-    from modalkit.workflow import identification
+    from modalkit.workflow import processed
 
-    judged = identification._judged([one, other], ProcessingOptions(), [])
+    judged = decided(proposed([one, other], ProcessingOptions()), ProcessingOptions(), [])
     drawn = _gather(judged[1].test, judged[1].verdicts)
     assert [name for name, used in zip(drawn.names, drawn.used, strict=True) if not used] == ["1+Z hit 5"]
     names = [(str(v.point), v.hit) for j in judged for v in j.verdicts]
     assert len(set(names)) == 18
     assert [n for n in names if n[0] == "1+Z"] == [("1+Z", k) for k in range(1, 7)]
     assert [(str(v.point), v.hit) for j in judged for v in j.verdicts if not v.used] == [("1+Z", 5)]
-    decided = identification._judged([one, other], ProcessingOptions(leave=(("1+Z", 4),)), [])
-    frfs = identification._estimated(decided, ProcessingOptions())
+    leaving = ProcessingOptions(leave=(("1+Z", 4),))
+    after = decided(proposed([one, other], leaving), leaving, [])
+    frfs = processed._estimated(after, ProcessingOptions())
     assert frfs.averages is not None
     assert frfs.averages.tolist() == [3, 3, 3, 1, 3, 3]
 

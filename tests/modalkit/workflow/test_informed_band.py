@@ -10,7 +10,8 @@ import pytest
 from acquisition import Dof, FrfSet, HammerTest, UffContent, estimate_frfs, hammer_test, judge_hits
 from acquisition.synthetic import HammerPlan, modal_system
 from identification import informed_band
-from modalkit.workflow.identification import Judged, Processed
+from modalkit.workflow.judged_hits import Judged
+from modalkit.workflow.processed import Processed
 from modalkit.workflow.processing_options import ProcessingOptions
 
 FREQUENCIES = np.array([60.0, 151.0, 288.0, 417.0, 530.0])
@@ -39,7 +40,7 @@ def test_a_band_beyond_the_force_ends_where_the_force_does(hits: int) -> None:
     (low, high), message = informed_band(frfs, [(test, ())], (20.0, 1000.0))
     assert low == 20.0 and 330 < high < 420
     assert message is not None and "to 1000 Hz as asked" in message and "harder tip" in message
-    assert "there is information again" in message  # the first side lobe of the force
+    assert "carry information again" in message  # the first side lobe of the force
 
 
 def test_a_band_that_the_force_reaches_is_left_alone() -> None:
@@ -71,6 +72,7 @@ def test_frfs_without_coherence_end_where_their_phases_are_those_of_noise() -> N
     assert informed_band(replace(clean, coherence=None, variance=None), [], None) == (None, None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("noise", [0.0, 1e-3])
 @pytest.mark.parametrize("seed", range(2))
 def test_averages_whose_force_ends_below_the_lines_need_no_band(seed: int, noise: float) -> None:

@@ -10,7 +10,8 @@ import pytest
 from acquisition import Dof, FrfSet, HammerTest, Hits, InputError, write_uff
 from acquisition.errors import EstimationError
 from modalkit.workflow.files import read_files
-from modalkit.workflow.identification import _naming_band, read
+from modalkit.workflow.identification import read
+from modalkit.workflow.processed import _naming_band
 
 
 def stored_frf(path: Path) -> str:

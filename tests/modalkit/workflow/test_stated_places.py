@@ -61,7 +61,7 @@ def test_points_without_coordinates_are_the_nodes_of_the_model(tmp_path: Path) -
     session = opened(tmp_path, columns)
     assert session.case.measured.points == pytest.approx(np.outer(np.arange(1, COUNT + 1), [0, 1, 0]))
     assert correlate(session.case).table["MAC"].to_numpy() == pytest.approx(1.0)
-    assert any("taken for the model's nodes" in warning for warning in session.case.measured.warnings)
+    assert any("placed at the model's node" in warning for warning in session.case.measured.warnings)
 
 
 def test_places_stand_in_the_study(tmp_path: Path) -> None:

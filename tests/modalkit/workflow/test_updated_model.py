@@ -51,6 +51,7 @@ def test_its_frequencies_are_those_after_the_update(name: str, tables: dict[str,
         assert found[mode] == pytest.approx(hertz, rel=1e-5)
 
 
+@pytest.mark.long
 def test_frequencies_of_bending_follow_the_root_of_the_modulus() -> None:
     session = session_of("beam_dry", update={"parameters": ["E"]})
     result = update_studies([session])

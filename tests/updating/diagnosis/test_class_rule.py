@@ -73,6 +73,13 @@ def test_a_faint_second_cause_beside_a_rival_does_not_make_the_rival_go() -> Non
     assert sets == (("E",), ("density",))
 
 
+def test_a_second_cause_that_no_datum_shows_beside_a_rival_counts_for_the_rival() -> None:
+    rows = row("E", 0.6, 100.0), row("density", 0.3, 99.8), row("density taper", 0.1, 100.5)
+    assert answer(*rows)[1] == (("E",), ("density",))
+    rows = row("E", 0.96, 100.0), row("density", 0.02, 90.0), row("density taper", 0.02, 90.5)
+    assert answer(*rows) == ("named", (("E",),))
+
+
 @pytest.mark.parametrize(("nothing", "gap"), [(0.25, False), (0.01, True)])
 def test_a_fit_that_chance_seldom_makes_shows_a_gap_once_nothing_at_all_is_not_credible(
     nothing: float, gap: bool
@@ -136,3 +143,17 @@ def test_rules_that_cannot_be_are_refused_and_those_changed_are_listed() -> None
     for name, value in (("credible_share", 1.5), ("split_sigma", 0.0), ("close_fits", float("inf"))):
         with pytest.raises(InputError, match=f"rule {name}"):
             DecisionRules(**{name: value})
+
+
+def test_a_cause_in_no_library_is_one_of_a_class_where_a_set_is_not_sure_without_it() -> None:
+    found: Any = SimpleNamespace(
+        compared=(row("E", 0.98, 100.0), row("density", 0.02, 90.0)), empty=row("", 0.0, 0.0)
+    )
+    assert decide(found, significant=True) == ("named", (("E",),))
+    assert decide(found, significant=True, unnamed=0.03) == ("named", (("E",),))
+    assert decide(found, significant=True, unnamed=0.1) == ("class", (("E",), ("something_else",)))
+    half: Any = SimpleNamespace(
+        compared=(row("E", 0.5, 100.0), row("density", 0.5, 100.0)), empty=row("", 0.0, 0.0)
+    )
+    assert decide(half, significant=True, unnamed=0.04)[1] == (("E",), ("density",))
+    assert decide(half, significant=True, unnamed=0.2)[1] == (("E",), ("density",), ("something_else",))

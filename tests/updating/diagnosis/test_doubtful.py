@@ -29,7 +29,7 @@ def posed(ratio: np.ndarray) -> Posed:
 def test_a_lone_mode_is_stated_with_what_rests_on_it(explained: str) -> None:
     (note,) = notes_on_doubtful(posed(np.array([1.2, 1.0, 1.001, 1.0, 0.999, 1.0])), explained)  # type: ignore[arg-type]
     assert "24.00 Hz deviates from the others" in note
-    assert ("Settle this before drawing conclusions" in note) is not bool(explained)
+    assert ("check for a mistake or a wrong pair" in note) is not bool(explained)
     assert (f"{explained} explains it and depends on it" in note) is bool(explained)
 
 

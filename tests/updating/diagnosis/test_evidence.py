@@ -226,7 +226,7 @@ def test_p_values_of_what_it_does_not_allow_are_small(channel: int) -> None:
 def test_one_scale_is_one_gaussian() -> None:
     data = comparison(9)
     logpdf = multivariate_normal.logpdf(data.residual, cov=full(data, 4.0, np.ones(24, bool)))
-    assert gaussian(data, [4.0]).log_likelihood[0, 0] == pytest.approx(logpdf, rel=1e-9)
+    assert gaussian(data, [4.0]).log_likelihood[0, 0, 0] == pytest.approx(logpdf, rel=1e-9)
 
 
 def test_a_pair_has_the_parameters_of_both() -> None:

@@ -60,6 +60,7 @@ def separation_of(trial: object, problem: SpecimenProblem, a: Rival, b: Rival) -
     return separation(expected[0], expected[1], b)
 
 
+@pytest.mark.long
 def test_weighing_sees_density_as_far_as_tolerances_and_balance_allow(
     problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
@@ -116,6 +117,7 @@ def test_a_rival_is_never_separated_from_itself(problem: SpecimenProblem, rivals
         assert separation_of(trial, problem, rivals["E"], rivals["E"]) < 1e-6
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_what_separates_all_comes_first_and_the_cheapest_of_it_at_the_top(problem: SpecimenProblem) -> None:
     found = search(problem, [LIBRARY[n] for n in SCALED])
@@ -136,6 +138,7 @@ def test_two_explanations_are_told_apart_by_the_cheapest_way(problem: SpecimenPr
     assert tests[0].separates == ("E", "density")
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_a_named_cause_is_separated_from_its_most_probable_rival_first(problem: SpecimenProblem) -> None:
     """Of E the length is the nearest rival here: what tells them apart stands before what tells others better."""
@@ -165,6 +168,7 @@ def test_where_no_rival_is_separated_the_most_probable_one_is_spoken_of() -> Non
     assert not _Found(trial, site, {(0, 1): 1.2, (0, 2): 9.0}, (0, 1)).confirms
 
 
+@pytest.mark.long
 def test_several_specimens_say_on_which_of_them() -> None:
     cases = [case_of(0.85, "first"), case_of(0.8, "second")]
     both = diagnose_together(cases, library=[LIBRARY["E"], LIBRARY["density"]])

@@ -13,7 +13,9 @@ from updating_cases import PLATE as FINE_PLATE
 from acquisition.errors import InputError
 from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.answer.result import Diagnosis
-from updating.diagnosis.diagnose import _locate, diagnose_together, pose
+from updating.diagnosis.answer.where import locate
+from updating.diagnosis.decision import on_one
+from updating.diagnosis.diagnose import diagnose_together, pose
 from updating.diagnosis.problem.recent import Recent
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import explain
@@ -85,6 +87,7 @@ def together(*shared: str) -> Diagnosis:
     return diagnose_together(cases, shared=shared, library=FEW)
 
 
+@pytest.mark.long
 def test_shared_parameters_have_one_value_and_others_one_on_each() -> None:
     problem = sharing("length", "sensor_mass")
     candidate = Candidate((LENGTH, STIFF, SENSOR))
@@ -195,7 +198,7 @@ def test_an_effect_that_cannot_be_on_one_specimen_is_sought_on_the_other(
     assert list(values) == [f"orthotropy.{name}{whose}" for name in ("ratio", "shear_ratio", "coupling")]
     assert next(iter(values.values())) == pytest.approx(RATIO, rel=0.1)
     states = problem.place(found.candidate, found.best.coordinates)
-    assert [bool(state.stiffness) for state in states] == [k == "plate" for k in order]
+    assert [bool(state.factors) for state in states] == [k == "plate" for k in order]
     for i, kind in enumerate(order):
         part = found.restricted(*problem.part(found.candidate, i))
         assert part.names == (("orthotropy",) if kind == "plate" else ())
@@ -237,7 +240,8 @@ def test_of_matrices_places_are_those_of_the_specimen_on_which_the_cause_acts() 
         ),
         Compared(explanation=nothing, probability=0.0, p_value=0.0, as_stated=0.0),
     )
-    found = _locate(problem, Search(nothing, rows, {}), "named")
+    whole = Search(nothing, rows, {})
+    found = locate(*on_one(problem, whole), verdict="named", whole=whole)
     assert found.locations == (pytest.approx(bare.measured.points[2]),)
 
 
@@ -248,8 +252,10 @@ def test_no_effect_on_either_is_no_gap() -> None:
     assert found.verdict == "none"
 
 
+@pytest.mark.long
 def test_while_one_specimen_moves_the_others_are_not_compared_again(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, made = replace(sharing(), recent=Recent()), []
+    assert all(one.linearised for one in problem.specimens)  # which takes a comparison of its own, once
     compare = SpecimenProblem.compare
 
     def counted(self: SpecimenProblem, *args: object, **options: object) -> Comparison:
@@ -268,7 +274,7 @@ def test_while_one_specimen_moves_the_others_are_not_compared_again(monkeypatch:
         assert np.array_equal(anew.nuisance, found.nuisance)
 
 
-def test_the_strain_of_each_specimen_is_that_of_its_own_tolerances() -> None:
+def test_the_strain_of_each_specimen_is_that_of_its_own_nuisances() -> None:
     """Whatever else a set of causes leaves in doubt beside them."""
     both = sharing()
     candidate = Candidate((LENGTH,))
@@ -276,6 +282,6 @@ def test_the_strain_of_each_specimen_is_that_of_its_own_tolerances() -> None:
     found = both.at(candidate, middle)
     second = both.specimens[1]
     shift = np.zeros(found.nuisance.shape[1])
-    shift[found.tolerances[-len(second.names) :]] = 1.0
-    assert both.strain(shift[found.tolerances]) == second.strain(np.ones(len(second.names)))
+    shift[found.moving[-second.linearised :]] = 1.0
+    assert both.strain(shift[found.moving]) == second.strain(np.ones(second.linearised))
     assert found.tolerances[-1] >= len(both.at(Candidate(), np.zeros(0)).tolerances)

@@ -317,7 +317,7 @@ CONTRACT = {
     "shear": set(),
     "orthotropy": {"ratio", "shear_ratio", "coupling"},
     "axial_load": {"force"},
-    "fluid_added_mass": {"fluid_density", "free_surface", "bottom"},
+    "fluid_added_mass": {"fluid_density", "free_surface", "bottom", "wall"},
     "fluid_damping": {"viscosity"},
     "damping_patch": {"x", "y", "extent", "extent_y", "loss_factor", "alpha", "beta", "mass", "stiffness"},
     "uniform_damping": {"alpha", "beta", "loss_factor"},

@@ -209,6 +209,7 @@ def test_uniform_damping_over_an_accepted_one_is_that_of_the_structure_alone() -
     assert found == pytest.approx(carrying(bare.of(spec), frequency=150.0).predict(count=4).damping, rel=1e-6)
 
 
+@pytest.mark.long
 def test_an_accepted_one_leaves_modes_far_from_it_out_of_doubt() -> None:
     """Its idealisation errs by a share of the shift that it makes: here against the modes of the bare beam."""
     bare = Predictor(BEAM, blank(POINTS))
@@ -276,6 +277,7 @@ def tuned(beam: ExactBeam, rng: np.random.Generator, *, x: float, share: float, 
     return observed(own / (2 * np.pi), damping, level * seen * seen[-1], POINTS, rng)
 
 
+@pytest.mark.long
 def test_its_mode_takes_no_partner_from_another() -> None:
     rng = np.random.default_rng(4)
     test = tuned(specimen(rng), rng, x=0.25, share=0.05, hertz=150.0)

@@ -15,7 +15,7 @@ from updating.effects.structure.attachment import Attachment, attachment_of, wit
 from updating.models import Damping
 from updating.models.build import build_structure
 from updating.models.fields import Sparse
-from updating.models.reduced import reduce_structure
+from updating.models.reduction import reduce_structure
 from updating.models.state import State
 from updating.simulation.model import simulated
 

@@ -120,6 +120,7 @@ def test_the_small_model_is_the_full_one(name: str, edge: str) -> None:
     np.testing.assert_allclose(found, full, rtol=3e-4)
 
 
+@pytest.mark.long
 def test_both_let_go_together() -> None:
     here = predictor("x0")
     bending = bending_stiffness(THIN)

@@ -17,7 +17,7 @@ from modalkit.simulator.bodies.plate.plate import Plate
 from updating import LIBRARY, Material, Predictor, Spec
 from updating.effects.box import SOFT, mirror_images, shares
 from updating.effects.structure.axial_load import buckling_load
-from updating.effects.structure.mass import sensor_places
+from updating.effects.structure.sensors import sensor_places
 from updating.models import FieldStructure, PointMass, Region, build_structure
 from updating.models.fields import Sparse
 from updating.models.state import State
@@ -166,6 +166,7 @@ def test_huber_is_a_change_of_scale_across(ratio: float) -> None:
     assert found == pytest.approx(np.sqrt(values) / (2 * np.pi), rel=5e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("ratio", "shear_ratio", "coupling"), [(0.5, 0.3, 1.0), (1.8, 2.0, 0.4), (4.0, 0.15, 2.0)]
 )

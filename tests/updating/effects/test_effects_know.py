@@ -15,10 +15,11 @@ ROOT = Path(__file__).resolve().parents[3]
 OWN = ("updating/effects", "modalkit/blind", "modalkit/simulator", "modalkit/planning", "modalkit/papers")
 """Rooms of the effects themselves, and those that must not know the library: they have names of their own."""
 
-KINDS = ("updating/models", "modalkit/study")
-"""Rooms that build a model of some kind."""
+KINDS = ("updating/models", "modalkit/study", "modalkit/app/form.py")
+"""Rooms that build a model of some kind, and the form that asks for what it is built from."""
 
-KEYS = {("modalkit/study/tables.py", "exponential_window")}
+SPELLED = frozenset({"modalkit/study/tables.py", "modalkit/app/asked.py", "modalkit/app/model_page.py"})
+KEYS = {(room, "exponential_window") for room in SPELLED}
 """Keys of a study that are spelled as an effect is."""
 
 WHOSE = frozenset({"effect", "effects", "name", "names"})

@@ -14,7 +14,7 @@ from modalkit.simulator.bodies.plate.plate import Plate
 from updating import Damping, Environment, Material, Predictor
 from updating.effects import accepted_state
 from updating.effects.structure.fluid import WATER, FluidAddedMass, FluidDamping, fluid_density
-from updating.effects.structure.wetted import mass_within, surroundings, unit_mass
+from updating.effects.structure.wetted import OPEN, mass_within, surroundings, unit_mass
 from updating.fluid import FluidDomain, added_mass, beam_added_mass, quadrature_grid
 from updating.models import PointMass
 from updating.models.state import State
@@ -101,6 +101,7 @@ def test_what_an_accepted_length_puts_into_the_clamp_is_not_wet(extension: float
     assert found == pytest.approx(expected, rel=2e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("clamped", "walls"),
     [
@@ -124,6 +125,7 @@ def test_one_clamped_edge_lets_no_fluid_pass(clamped, walls) -> None:
     np.testing.assert_allclose(unit_mass(predictor), expected, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.long
 def test_coupling_by_the_fluid_is_kept() -> None:
     """Modes that the fluid mixes come out lower and higher than each by itself; a sum of frequencies is no proof."""
     predictor = Predictor(PLATE, blank(np.array([[0.2, 0.1], [0.3, 0.15]])))
@@ -146,9 +148,10 @@ def test_a_mass_told_beforehand_is_no_fluid() -> None:
 def test_the_distances_that_the_study_does_not_state_are_searched_for() -> None:
     fluid = FluidAddedMass()
     for around, names in (
-        (Environment(), ["fluid_density", "free_surface", "bottom"]),
-        (Environment(998.0, bottom=0.1), ["fluid_density", "free_surface"]),
-        (Environment(998.0, 0.2, 0.1), ["fluid_density"]),
+        (Environment(), ["fluid_density", "free_surface", "bottom", "wall"]),
+        (Environment(998.0, bottom=0.1), ["fluid_density", "free_surface", "wall"]),
+        (Environment(998.0, 0.2, 0.1), ["fluid_density", "wall"]),
+        (Environment(998.0, 0.2, 0.1, (0.0, INF, -INF, INF)), ["fluid_density"]),
     ):
         predictor = Predictor(BEAM, blank(POINTS), around)
         assert [p.name for p in fluid.parameters(predictor)] == names
@@ -165,7 +168,9 @@ def test_what_is_read_from_the_table_is_what_is_solved(spec, around: Environment
     dry = predictor.predict(count=6).frequency
     for quantiles in (np.zeros(count), np.ones(count), *rng.random((6, count))):
         values = fluid.values(predictor, quantiles.tolist())
-        solved = mass_within(predictor, surroundings(predictor, values))
+        there = surroundings(predictor, values)
+        walled, bare = (mass_within(predictor, one) for one in (there, replace(there, walls=OPEN)))
+        solved = values["wall"] * walled + (1 - values["wall"]) * bare
         found = predictor.predict(fluid.state(predictor, values), count=6).frequency
         exact = predictor.predict(State(mass=(values["fluid_density"] * solved,)), count=6).frequency
         assert np.log(found / dry) == pytest.approx(np.log(exact / dry), rel=3e-3)
@@ -217,3 +222,17 @@ def test_what_the_fluid_adds_in_the_first_mode_is_what_its_frequency_tells(spec)
     ratio, unit = fluid.derived(predictor, values)["added_mass_ratio"]
     assert unit == "-"
     assert ratio == pytest.approx((dry / wet) ** 2 - 1, rel=0.02)
+
+
+def test_a_clamp_is_a_wall_in_part() -> None:
+    """Half of it adds the mean of both; a study that states the walls leaves nothing open."""
+    predictor, fluid = Predictor(BEAM, blank(POINTS)), FluidAddedMass()
+    added = [fluid.state(predictor, {"fluid_density": WATER, "wall": w}).mass[0] for w in (0.0, 0.5, 1.0)]
+    np.testing.assert_allclose(added[1], (added[0] + added[2]) / 2)
+    np.testing.assert_array_equal(fluid.state(predictor, {"fluid_density": WATER}).mass[0], added[2])
+    for walls, rank in (((-INF, INF, -INF, INF), 0), ((0.0, INF, -INF, INF), 2)):
+        stated = replace(predictor, environment=Environment(walls=walls))
+        found = fluid.state(stated, {"fluid_density": WATER}).mass[0]
+        np.testing.assert_allclose(found, added[rank], rtol=1e-9, atol=1e-12)
+    heavier = [predictor.predict(State(mass=(WATER * one,)), count=3).frequency for one in added]
+    assert (np.diff(heavier, axis=0) < 0).all()  # a wall lets no fluid pass round the edge

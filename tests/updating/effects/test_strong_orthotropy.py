@@ -11,6 +11,7 @@ from updating.diagnosis.answer.verdict import estimates
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.models.spec import Material
+from updating.models.state import State
 from updating.problem.candidate import Candidate
 
 pytestmark = pytest.mark.long
@@ -30,3 +31,16 @@ def test_the_ratio_of_wood_is_within_what_is_searched(ratio: float) -> None:
     size = estimates(problem, found)["orthotropy.ratio"]
     assert not problem.parameters(found.candidate)[0][1].extreme(float(found.best.coordinates[0]))
     assert size.value == pytest.approx(ratio, rel=0.05)
+
+
+@pytest.mark.parametrize("theory", ["kirchhoff", "mindlin"])
+def test_a_modulus_off_its_tolerance_scales_both_directions(theory: str) -> None:
+    """Wood with a third of the modulus has all of its frequencies by the root of it, across the grain as along it."""
+    board = Predictor(replace(BOARD, theory=theory), blank(GRID, top=500.0))
+    state = LIBRARY["orthotropy"].state(board, {"ratio": 0.09, "shear_ratio": 0.55})
+    stated, softer = (
+        board.predict(state.plus(State(factors={"E": factor})), factors=("E",), count=8)
+        for factor in (1.0, 1 / 3)
+    )
+    assert softer.frequency == pytest.approx(stated.frequency / np.sqrt(3), rel=1e-6)
+    assert stated.log_frequency_by == pytest.approx(0.5, abs=1e-6)

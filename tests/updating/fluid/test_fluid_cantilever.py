@@ -50,6 +50,7 @@ def limit(planes: dict[float, float], *, wall: bool) -> np.ndarray:
     return (4 * (2 * third - second) - (2 * second - first)) / 3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("wall", [True, False])
 @pytest.mark.parametrize(
     ("around", "planes"),

@@ -77,6 +77,7 @@ def test_nearer_walls_add_mass_and_a_nearer_surface_takes_it(gap, farther):
     assert near > far * (1.0 - 2e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("walls", [(-INF, INF, 0.0, INF), (-INF, INF, -INF, 1.0)])
 def test_a_plate_at_a_wall_is_half_of_its_mirrored_double(walls):
     x, y = quadrature_grid(1.3, 1.0, 16)

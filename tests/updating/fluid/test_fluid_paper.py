@@ -100,6 +100,7 @@ def test_added_mass_ratios_of_the_plate_follow_the_measured_pattern(plate):
     np.testing.assert_allclose(WATER * np.diag(added), [4.1, 2.1, 3.8, 1.9, 3.0, 1.8, 1.7], rtol=0.025)
 
 
+@pytest.mark.long
 def test_wet_beam_lies_between_the_thin_and_the_thick_section():
     """Measured dry frequencies, cantilever shapes; the sensor's mass, left out, would lower the effect."""
     length, width, thickness = 0.376, 0.0305, 0.0047625

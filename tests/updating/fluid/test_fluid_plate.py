@@ -118,6 +118,7 @@ def test_a_strip_in_roll_has_the_exact_rotational_inertia():
     assert value == pytest.approx(0.3 * np.pi * 0.5**4 / 8.0, rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_long_beam_approaches_strip_theory_from_below():
     ratios = []
     for length in (4.0, 16.0, 64.0):
@@ -142,6 +143,7 @@ def test_beam_and_plate_with_a_rigid_section_are_the_same():
     np.testing.assert_allclose(beam, plate, rtol=1e-9)
 
 
+@pytest.mark.long
 @given(
     scale=st.floats(1e-3, 1e3),
     ratio=st.floats(0.2, 5.0),

@@ -112,6 +112,7 @@ def test_slip_scales_is_symmetric_and_positive(scale, ratio, seed):
     assert np.linalg.eigvalsh(found[0]).min() > 0.0
 
 
+@pytest.mark.long
 def test_turning_the_plate_leaves_its_slip():
     x, y = quadrature_grid(1.7, 1.0, 12)
     shape = (np.cos(1.3 * x)[:, None] * np.exp(0.4 * y))[None]
@@ -122,6 +123,7 @@ def test_turning_the_plate_leaves_its_slip():
     np.testing.assert_allclose(other, one, rtol=1e-8)
 
 
+@pytest.mark.long
 def test_a_plate_at_a_wall_slips_like_half_of_its_mirrored_double():
     x, y = quadrature_grid(1.3, 1.0, 16)
     operator = AddedMassOperator.build(length=1.3, width=1.0, domain=FluidDomain(walls=(-INF, INF, 0.0, INF)))

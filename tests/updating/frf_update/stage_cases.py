@@ -12,7 +12,7 @@ from updating.frf_update.stage import Stage
 from updating.models.state import NOMINAL
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
-from updating.update.parameters.parameters import build_parameter_set
+from updating.update.parameters.named import build_parameter_set
 
 
 def stage_of(spec: Spec, measured: Measured, frfs: MeasuredFrfs, names: Sequence[str]) -> Stage:

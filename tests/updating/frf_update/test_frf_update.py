@@ -205,6 +205,7 @@ def test_equation_9_is_exact_where_every_degree_of_freedom_is_measured() -> None
     assert 1 + factor == pytest.approx(TRUTH["area"][0] / START["area"][0], rel=2e-3)
 
 
+@pytest.mark.long
 def test_lines_are_chosen_for_what_they_tell() -> None:
     measured, frfs = taken(beam(TRUTH))
     stage = stage_of(beam(START), measured, frfs, STRUCTURE)

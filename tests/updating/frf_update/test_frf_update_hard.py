@@ -17,7 +17,7 @@ from updating.models.response import receptance
 from updating.models.state import NOMINAL, State
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
-from updating.update.parameters.parameters import build_parameter_set, only_damps
+from updating.update.parameters.named import build_parameter_set, only_damps
 
 STEEL = Material(210e9, 7850.0, 0.3)
 CANTILEVER = Spec(
@@ -99,6 +99,7 @@ def test_a_parameter_of_an_effect_is_staged_as_damping_by_what_it_does() -> None
     assert [p.damps for p in parameter_set.model_parameters] == [True, False]
 
 
+@pytest.mark.long
 def test_an_accepted_window_is_in_the_model_s_frfs() -> None:
     measured, frfs = hit_beam(CANTILEVER, "exponential_window", decay=6.0)
     case = Case("c", CANTILEVER, measured, accepted=(("exponential_window", {"decay": 6.0}),))
@@ -116,6 +117,7 @@ def test_the_derivative_by_a_window_s_decay_against_differences() -> None:
     assert by == pytest.approx(difference, abs=1e-5 * np.abs(by).max())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("effect", "name", "true"), [("sensor_mass", "mass", 0.02), ("clamp_rotation", "stiffness", 2000.0)]
 )
@@ -194,6 +196,7 @@ def test_moved_resonances_are_those_of_a_stiffer_structure() -> None:
     assert np.linalg.norm(moved - change) < 2e-3 * np.linalg.norm(change)
 
 
+@pytest.mark.long
 def test_the_scatter_of_mountings_is_in_the_standard_deviations() -> None:
     """A modulus goes as the square of frequencies: its sigma is no less than twice their scatter over sqrt(modes)."""
     sigmas = []

@@ -38,6 +38,7 @@ def frequencies(ratios: np.ndarray) -> Measured:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("missed", [0.0, 0.03, 0.12])
 @pytest.mark.parametrize("change", [0.0, 0.005, 0.01, 0.03, 0.08])
 def test_a_change_is_judged_by_the_noise_of_both_tests(missed: float, change: float) -> None:

@@ -25,6 +25,7 @@ def test_it_is_near_nothing_where_the_window_is_what_fades() -> None:
     assert residual(STEADY, 0.0) == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("fading", "decay"), [(Fading(1.0, 5000, 2.0, 0.0), 0.0), (STEADY, 3.0)])
 def test_it_speaks_against_a_state_by_no_more_than_a_factor_of_a_hundred(
     fading: Fading, decay: float

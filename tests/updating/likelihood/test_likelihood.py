@@ -12,7 +12,7 @@ from identification.fading import Fading
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.likelihood.base import Doubt, Quantity, View
-from updating.likelihood.comparison import CHANNELS, Block, assemble
+from updating.likelihood.comparison import CHANNELS, Block, Layout, assemble
 from updating.models.state import NOMINAL, State
 from updating.problem.specimen import SpecimenProblem
 
@@ -146,11 +146,11 @@ def test_another_likelihood_of_a_kind_needs_no_change_of_the_assembly(
     at = view(diagnosis_problem, LIBRARY["E"].state(diagnosis_problem.predictor, {"factor": 1.05}))
     kinds = (Vague(diagnosis_problem.setting), *diagnosis_problem.quantities[1:])
     zero = np.zeros(len(diagnosis_problem.names))
+    families = [[q.block(at) for q in family] for family in (diagnosis_problem.quantities, kinds)]
+    layout = Layout.of(families[0], len(zero))
     one, other = (
-        assemble(
-            [q.block(at) for q in family], diagnosis_problem.sigmas, zero, at.now, (1.0, 0.0, 0.0, 0.0, 0.0)
-        )
-        for family in (diagnosis_problem.quantities, kinds)
+        assemble(blocks, layout, diagnosis_problem.sigmas, zero, at.now, (1.0, 0.0, 0.0, 0.0, 0.0))
+        for blocks in families
     )
     rows = one.of("frequency")
     np.testing.assert_allclose(other.variance[rows], 100 * one.variance[rows])

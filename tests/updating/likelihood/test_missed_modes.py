@@ -54,6 +54,7 @@ def test_constants_change_as_those_of_one_pole_that_is_fitted_to_two(without: Se
     assert columns[:, nearest] == pytest.approx(fitted - constants[0], rel=0.02)
 
 
+@pytest.mark.long
 def test_a_test_that_misses_no_close_mode_stays_as_sharp_as_it_is(without: Setting) -> None:
     whole = setting(list(range(6)))
     size = np.abs(whole.nominal.constants).max()

@@ -12,7 +12,7 @@ from scipy.stats import multivariate_normal
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import CHANNELS, Comparison
-from updating.likelihood.gaussian import gaussian, marginal, normal_equations
+from updating.likelihood.gaussian import gaussian, marginal, marginals, normal_equations
 from updating.likelihood.separate import separate
 from updating.thresholds import FEW_NUISANCES, MOST_TOGETHER, SHAPE_NOISE_SCALES
 
@@ -56,15 +56,15 @@ def test_the_likelihood_is_that_of_one_normal_distribution(pattern: Pattern, see
     keep = np.random.default_rng(seed + 1).random(len(data.residual)) < share
     keep[0] = True
     parts = gaussian(data, SHAPE_NOISE_SCALES[::3], keep)
-    for k in range(len(parts.scales)):
-        found = parts.at(0, k)
-        whole = covariance(data, found.scale, keep)
+    for k, scale in enumerate(parts.scales.tolist()):
+        whole = covariance(data, scale, keep)
         residual = data.residual[keep]
         expected = multivariate_normal(np.zeros(len(residual)), whole).logpdf(residual)
-        assert found.log_likelihood == pytest.approx(float(expected), rel=1e-9, abs=1e-7)
+        assert parts.log_likelihood[0, 0, k] == pytest.approx(float(expected), rel=1e-9, abs=1e-7)
         # the most probable nuisances are their covariance with the data, divided by the data's own
         shift = data.nuisance[keep].T @ np.linalg.solve(whole, residual)
-        np.testing.assert_allclose(found.shift, shift, atol=1e-8)
+        found = parts.shift(np.array([0]), np.array([k]))[0]
+        np.testing.assert_allclose(found, shift, atol=1e-8)
 
 
 @settings(max_examples=20)
@@ -101,7 +101,7 @@ def test_groups_share_no_row_and_no_nuisance_is_lost(
         own = group[group >= 0]
         assert set(np.flatnonzero(nuisance[:, own].any(axis=1))) == set(found.rows[start:end].tolist())
         np.testing.assert_array_equal(
-            found.values[start:end, : len(own)], nuisance[found.rows[start:end]][:, own]
+            found.values(nuisance)[start:end, : len(own)], nuisance[found.rows[start:end]][:, own]
         )
         assert (scaled[found.rows[start:end]] == one).all()
 
@@ -129,3 +129,29 @@ def test_a_prediction_far_from_the_data_that_a_nuisance_brings_back_is_no_error(
     far = 1e7 * np.ones(len(data.residual))
     near = replace(data, residual=-far, nuisance=0.02 * far[:, None], variance=np.full(len(far), 1e-7))
     assert np.isfinite(marginal(near).log_likelihood)
+
+
+@settings(max_examples=15)
+@given(pattern=patterns, seed=st.integers(0, 2**31))
+def test_many_comparisons_at_once_are_each_by_itself(pattern: Pattern, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    data = comparison(pattern, seed)
+    judged = np.where(data.channel == CHANNELS.index("frequency"), 0.5 * data.variance, 0.0)
+    data = replace(data, judged=judged, judged_columns=np.zeros(data.nuisance.shape[1], dtype=bool))
+    size = data.nuisance.shape
+    many = [
+        replace(
+            data, residual=rng.standard_normal(size[0]), nuisance=data.nuisance * rng.uniform(0.5, 2.0, size)
+        )
+        for _ in range(3)
+    ]
+    other = replace(data, nuisance=np.where(rng.random(size) < 0.5, data.nuisance, 0.0))
+    impossible = replace(data, residual=np.full(size[0], np.nan))
+    together = marginals([*many, other, impossible])
+    for one, found in zip([*many, other, impossible], together, strict=True):
+        alone = marginal(one)
+        assert found.log_likelihood == pytest.approx(alone.log_likelihood, rel=1e-12)
+        np.testing.assert_allclose(found.shift, alone.shift, rtol=1e-9, atol=1e-12)
+        assert (found.scale, found.share, found.unseen, found.judged) == (
+            alone.scale, alone.share, alone.unseen, alone.judged,
+        )  # fmt: skip

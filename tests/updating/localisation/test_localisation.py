@@ -92,6 +92,7 @@ def test_a_zone_that_lost_half_its_stiffness_is_the_most_suspect(
     assert np.sum(scores > scores[zone]) < among
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("zone", range(10))
 def test_evidence_and_subspace_find_a_tenth_under_tolerances(zone: int) -> None:
     problem = soft(zone, 0.12 if zone < 8 else 0.5)
@@ -219,10 +220,11 @@ def test_frequencies_alone_leave_nothing_to_the_shape_methods() -> None:
     for method in (ForceResidual(), ConstitutiveError(), Comac()):
         assert "needs mode shapes" in (method.obstacle(problem) or "")
     scores = RegionEvidence().scores(problem)
-    assert scores.sum() <= 1.0
+    assert scores.sum() <= 1.0 + 1e-9  # rounding of exponentials over hundreds of samples
     assert scores[3] / scores.sum() > 1 / 10
 
 
+@pytest.mark.long
 def test_a_model_without_damping_is_not_suspected_of_it() -> None:
     from updating import Damping
 
@@ -248,6 +250,7 @@ def test_a_soft_spot_astride_two_regions_is_put_into_one_of_them() -> None:
     assert found.by_kind["stiffness"] > 0.9
 
 
+@pytest.mark.long
 def test_regions_of_imported_matrices_are_weighed_too() -> None:
     beam = imported_beam(20, parts=(5, 10, 15))
     points = np.zeros((5, 3))

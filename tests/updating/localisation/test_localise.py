@@ -35,6 +35,7 @@ def test_the_soft_zone_is_first_by_the_methods_that_claim_it(zone: int) -> None:
     assert found.centres[zone, 0] == pytest.approx(BEAM.length * (zone + 0.5) / 10)
 
 
+@pytest.mark.long
 def test_without_a_gap_no_change_is_the_most_probable() -> None:
     rng = np.random.default_rng(8)
     found = localise(pose(case_of(struck(specimen(rng), rng), BEAM))[0], methods=("evidence",))

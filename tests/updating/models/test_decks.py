@@ -27,7 +27,7 @@ from updating.models.decks.model import DeckModel
 from updating.models.decks.states import deck_answers, deck_state
 from updating.models.fields import Sparse
 from updating.models.imported import Imported
-from updating.models.reduced import reduce_structure
+from updating.models.reduction import reduce_structure
 from updating.models.state import State
 from updating.models.whole import Whole
 from updating.update import update
@@ -85,6 +85,7 @@ def largest_difference(one: Sparse, other: Sparse) -> float:
     return float(abs(scale @ (one - other) @ scale).max())
 
 
+@pytest.mark.long
 @needs_ccx
 def test_a_solid_is_what_ccx_finds_and_what_a_bar_does(bricks: Bricks, tmp_path: Path) -> None:
     """To 1e-6 of CalculiX's seven digits; along the bar, c / 4 L and three times that, on the nose."""
@@ -95,6 +96,7 @@ def test_a_solid_is_what_ccx_finds_and_what_a_bar_does(bricks: Bricks, tmp_path:
     assert np.abs(found / along - 1).min() < 1e-4
 
 
+@pytest.mark.long
 @needs_ccx
 def test_a_slender_cantilever_bends_as_the_closed_form_says(bricks: Bricks, tmp_path: Path) -> None:
     """1 m by 20 x 10 mm: shear and rotary inertia take 1e-4 or less from the first mode each way."""

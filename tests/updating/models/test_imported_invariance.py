@@ -21,7 +21,7 @@ from updating import Predictor, Region, build_structure
 from updating.models.accuracy import reduction_error
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
-from updating.models.reduced import reduce_structure
+from updating.models.reduction import reduce_structure
 from updating.models.state import State
 from updating.prediction.prediction import Prediction
 

@@ -17,7 +17,7 @@ from updating.models.fields import Sparse
 from updating.models.imported import read_imported
 from updating.models.imported.rounding import decimal_rounding
 from updating.models.imported.structure import ImportedStructure
-from updating.models.reduced import reduce_structure
+from updating.models.reduction import reduce_structure
 from updating.models.state import NOMINAL
 
 TEE = line(5, [0, 0.6, 0]) + [[1.2 * i, 1.2 + 0.24 * i, 0.0] for i in range(1, 4)]
@@ -89,6 +89,7 @@ def test_ten_digits_of_a_stiff_offset_do_not_move_the_first_mode() -> None:
     assert elastic(given) == pytest.approx(exact.frequencies(11)[6:], rel=1e-8)
 
 
+@pytest.mark.long
 @settings(max_examples=15)
 @given(
     seed=st.integers(0, 2**31),

@@ -33,7 +33,8 @@ from updating.models.imported import Imported, NodeTable
 from updating.models.imported.checks import negative_pivots
 from updating.models.imported.ordering import factored
 from updating.models.named_factors import departure, unassigned
-from updating.models.reduced import Reduced, reduce_structure
+from updating.models.reduced import Reduced
+from updating.models.reduction import reduce_structure
 from updating.models.state import NOMINAL, State
 
 ROOTS = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.995540735])
@@ -432,6 +433,7 @@ def test_regions_of_a_lumped_beam_against_guyan(elements: int) -> None:
     assert np.sqrt(found) == pytest.approx(np.sqrt(expected), rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_body_is_factored_by_its_places(rng: np.random.Generator) -> None:
     """Same answers, same pivots' signs and rows as by minimum degree; of a solid block less fill."""
     side = 14

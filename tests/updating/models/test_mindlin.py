@@ -110,6 +110,7 @@ def test_size_and_direction_do_not_matter(scale: float, thickness: float, clampe
     assert frequencies(swapped, 5) == pytest.approx(plain, rel=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("factor", ["E", "density", "thickness", "length", "width"])
 def test_factors_are_other_plates(factor: str) -> None:
     """A factor on the model gives the frequencies of the plate that has it, but for the narrow edge elements."""

@@ -15,7 +15,7 @@ from updating.models.imported.groups import rigid_motions
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.update.data.nominal import UpdatedModel
-from updating.update.parameters.parameters import build_parameter_set
+from updating.update.parameters.named import build_parameter_set
 from updating.update.parameters.sensitivity import log_frequency_by
 
 SPRING, ELEMENTS, DIVIDED = 300.0, 20, 10

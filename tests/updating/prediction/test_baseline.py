@@ -13,7 +13,7 @@ from updating import LIBRARY, Damping, Measured, Predictor
 from updating.diagnosis.diagnose import pose
 from updating.likelihood.gaussian import marginal
 from updating.models.state import State
-from updating.prediction.baseline import correct, modal_mass
+from updating.prediction.baseline import correct, in_one_chain, modal_mass
 from updating.test_data.chain import measurement_chain
 
 LOOK = Predictor(BEAM, blank(POINTS))
@@ -164,3 +164,35 @@ def test_what_the_model_misses_is_read_as_the_measurement_reads_the_rest(state: 
         for test, undone in ((after, State()), (wrong, state))
     ]
     assert fits[1] == pytest.approx(fits[0], rel=0.02)
+
+
+@pytest.mark.parametrize("gain", [0.4, 2.5])
+def test_a_chain_without_calibration_is_calibrated_by_the_baseline(gain: float) -> None:
+    """The level of both tests is that of the chain; one that has changed in between is seen."""
+    rng = np.random.default_rng(7)
+    beam = specimen(rng)
+    tests = [replace(struck(beam, rng), calibration=0.5) for _ in range(2)]
+    for after in (1.0, 1.3):
+        found = []
+        for chain in (1.0, gain):
+            before, now = (
+                replace(test, constants=level * test.constants, constants_sigma=level * test.constants_sigma)
+                for test, level in zip(tests, (chain, chain * after), strict=True)
+            )
+            problem, warnings = pose(replace(case_of(now, BEAM), baseline=before))
+            assert any("one measurement chain" in warning for warning in warnings)
+            as_before, changed = (
+                marginal(problem.compare(State(gain=one))).log_likelihood for one in (1.0, 1.3)
+            )
+            found.append(changed - as_before)
+        assert found[1] == pytest.approx(found[0], rel=1e-6)
+        assert found[0] > 10 if after > 1 else found[0] < -10
+
+
+def test_another_calibration_is_another_chain() -> None:
+    rng = np.random.default_rng(7)
+    test = replace(struck(specimen(rng), rng), calibration=0.5)
+    assert in_one_chain(test, test).calibration == Measured.calibration
+    assert in_one_chain(test, replace(test, calibration=0.4)) is test
+    good = replace(test, calibration=0.01)
+    assert in_one_chain(good, good).calibration == 0.01

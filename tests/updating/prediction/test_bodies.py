@@ -11,6 +11,8 @@ from updating_cases import BEAM, PLATE, POINTS, blank, exactly
 from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.models.parts import PointMass
+from updating.models.state import State
+from updating.prediction.bodies import displaced
 from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
 from updating.thresholds import STATED_MASS_DOUBT
@@ -76,10 +78,22 @@ def test_a_body_is_in_doubt_under_every_theory(fuller: bool) -> None:
     heavier = np.array([3.0 * (name == "mass 1") for name in problem.names])
     state = Candidate(fuller=fuller).state(problem.predictor, np.zeros(0))
     found = problem.compare(state, heavier).prediction.frequency
-    mass = MASS * (1 + 3 * STATED_MASS_DOUBT)
+    mass = MASS * np.exp(3 * STATED_MASS_DOUBT)
     other = replace(carrying(beam, middle(beam), mass), theory="timoshenko" if fuller else beam.theory)
     assert found == pytest.approx(at_rest(other).frequency, rel=1e-6)
 
 
 def test_a_model_without_bodies_has_none_in_doubt() -> None:
     assert Predictor(BEAM, blank(POINTS)).body_changes == {}
+
+
+@pytest.mark.parametrize("away", [-0.4, 0.05, 3.0])
+def test_a_body_far_from_its_place_is_another_model_on_the_structure(away: float) -> None:
+    """Also where it would lie beside the plate: its place is then the edge."""
+    predictor = Predictor(carrying(PLATE, middle(PLATE)), blank(points_of(PLATE)))
+    x, y = middle(PLATE)
+    gain = displaced(predictor.reduced, predictor.spec, {"mass 1 x": away, "mass 1": 0.1})
+    found = predictor.predict(State(mass=gain), count=MODES).frequency
+    at = (min(max(x + away, 0.0), PLATE.length), y)
+    other = at_rest(carrying(PLATE, at, MASS * np.exp(0.1))).frequency
+    assert found == pytest.approx(other, rel=2e-3)  # the basis is that of the body at its stated place

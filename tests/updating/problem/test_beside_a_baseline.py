@@ -43,6 +43,7 @@ def test_a_shift_of_tolerances_is_not_counted_twice(problem: SpecimenProblem) ->
     assert problem.strain(np.ones(len(problem.names))) == 0.0
 
 
+@pytest.mark.long
 def test_what_has_changed_since_is_found_whatever_the_tolerances(problem: SpecimenProblem) -> None:
     found = explain(problem, Candidate((LIBRARY["thickness"],)))
     values = problem.values(found.candidate, found.best.coordinates)
@@ -54,6 +55,7 @@ def test_what_has_changed_since_is_found_whatever_the_tolerances(problem: Specim
 HEAVIER = 2.3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "missed",
     [{"masses": ((0.3008, 0.05),)}, {"soft": (0.10, 0.13, 0.6)}],

@@ -84,6 +84,7 @@ def test_the_thick_plate_of_this_file_is_the_published_one(
     assert thick_plate(plate, len(known), 12) / unit == pytest.approx(known, abs=0.0015)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("thickness", [0.003175, 0.01])
 @pytest.mark.parametrize("clamped", [("x0",), ("x0", "x1", "y0", "y1"), ()])
 def test_what_thin_plates_lack_is_known_mode_by_mode(thickness: float, clamped: tuple[str, ...]) -> None:

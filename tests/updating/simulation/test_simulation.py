@@ -163,6 +163,7 @@ def test_modes_add_up_to_the_direct_answer(spec: Spec) -> None:
     assert bare.max() > 1e-3 * np.abs(direct[:, 100:]).max()  # the count is heeded
 
 
+@pytest.mark.long
 def test_points_anywhere_are_as_good_as_points_of_the_test() -> None:
     test = blank(np.array([[0.4, 0.05], [0.31, 0.17]]))
     line = 2j * np.pi * np.linspace(2.0, 600.0, 40)
@@ -287,6 +288,7 @@ def test_fourier_transform_of_the_windowed_impulse_response_is_the_frf_off_the_a
     assert np.abs(found - exact[0]).max() < 1e-4 * np.abs(exact).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("spec", [MIXED, FREE], ids=["by region", "free"])
 def test_the_hammer_test_and_the_motion_under_its_force_agree(spec: Spec, rng: np.random.Generator) -> None:
     model = seen_from(spec).hung()

@@ -71,6 +71,7 @@ def updated(folder: Path, deck: list[str], found: np.ndarray, *parameters: str) 
     return update(case, parameters=parameters)
 
 
+@pytest.mark.long
 def test_thickness_spring_and_modulus_come_back_together(shells: ModuleType, tmp_path: Path) -> None:
     """On the same mesh, to what a tenth of a per mille of noise and the digits of thin shells allow."""
     true = angle(shells, 0.003 * 0.92, 1.2e4, 0.97 * 210e9)

@@ -81,7 +81,7 @@ def test_the_report_says_what_a_fit_says() -> None:
     text = update(case_of(softer_root()), parameters=["E", "density", "root.E"]).report()
     for message in ("[[Fit statistics]]", "reduced chi-square", "+-", "init 2.1e+11", "C(E, density)"):
         assert message in text
-    assert "E, density: not each by itself" in text
+    assert "E, density: the data determine only" in text
     assert "NOT DETERMINED" in text
 
 

@@ -23,7 +23,7 @@ def of_body(modes: list[int], *, upside_down: int | None = None) -> Update:
 def test_without_a_degree_of_freedom_nothing_is_tested() -> None:
     result = of_body([0, 1])
     assert result.dof <= 0
-    assert result.warnings[0].startswith("the fit is not tested: 2 data and 2 parameters")
+    assert any(w.startswith("the fit is not tested: 2 data and 2 parameters") for w in result.warnings)
     assert "NOTHING IS TESTED" in result.report() and "nan" not in result.report()
 
 

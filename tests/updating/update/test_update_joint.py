@@ -53,6 +53,7 @@ def values(result: Update) -> dict[str, float]:
     }
 
 
+@pytest.mark.long
 def test_length_and_sensor_shared_and_a_modulus_for_the_plate() -> None:
     common = ("length", "sensor_mass")
     result = joint(beam=common, plate=(*common, "E"), shared=common)
@@ -68,6 +69,7 @@ def test_length_and_sensor_shared_and_a_modulus_for_the_plate() -> None:
     assert result.exact
 
 
+@pytest.mark.long
 def test_the_modulus_shared_by_both() -> None:
     every = ("length", "sensor_mass", "E")
     result = joint(beam=every, plate=every, shared=every)
@@ -78,6 +80,7 @@ def test_the_modulus_shared_by_both() -> None:
     assert result.rms_percent() == pytest.approx(0.65, abs=0.01)
 
 
+@pytest.mark.long
 def test_a_modulus_for_each() -> None:
     every = ("length", "sensor_mass", "E")
     result = joint(beam=every, plate=every, shared=every[:2])

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.diagnosis.answer.result import Place
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import highest
+from updating.effects.box import Place
 from updating.problem.specimen import SpecimenProblem
 
 SEARCHED = frozenset({"x", "y", "z", "region"})

@@ -85,7 +85,7 @@ def splits(
     """
     if not len(explanation.best.coordinates):
         return ()
-    columns = np.nan_to_num(sensitivities(problem, explanation.candidate, explanation.best))
+    columns = sensitivities(problem, explanation.candidate, explanation.best)
     names = [name for name, _ in problem.parameters(explanation.candidate)]
     found = []
     for parts, first, second in _halves(explanation.best.comparison):

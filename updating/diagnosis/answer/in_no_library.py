@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 from acquisition.display import Displayed
 from acquisition.quantities import probability
+from updating.diagnosis.answer.mechanism import Component
+
+SOMETHING_ELSE = "something_else"
+"""What stands for a cause in no library where a set names its effects."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +52,17 @@ class SomethingElse(Displayed):
     changes : tuple of RegionalChange
         What it would change of the structure where it is the cause, what is surest first; those of less than two
         standard deviations are left out.
+    channels : mapping of str to float
+        Probability that it changes stiffness, mass, damping, and the measurement, where it is the cause [-].
+    parts : tuple of Component
+        What it does where it is the cause, what is surest first.
     """
 
     probability: float
     beside: float
     changes: tuple[RegionalChange, ...]
+    channels: Mapping[str, float] = field(default_factory=dict)
+    parts: tuple[Component, ...] = ()
 
     def _headline(self) -> str:
         return f"{probability(self.probability)}: {', '.join(map(str, self.changes[:3])) or 'nothing of the structure'}"

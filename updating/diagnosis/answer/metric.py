@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.diagnosis.answer.result import Metric
+from updating.diagnosis.answer.closing import Metric
 from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import Comparison

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.arrays import BoolArray
-from updating.diagnosis.answer.result import Remainder, Shrink
+from updating.diagnosis.answer.closing import Remainder, Shrink
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation

@@ -70,10 +70,11 @@ class DecisionRules:
         middle [-]: the contract's rule. Doubling what is left out drops rivals in the outer two per cent.
     close_fits : float
         Twice the difference of log-likelihood below which two explanations are equivalent [-]: 2 sigma, as the
-        contract has it.
+        contract has it. Doubled: more sets are equivalents, and a class loses sets that only add a cause to another.
     whole_beside_part : float
         A part of the first set that fits by itself stays in the answer unless the log evidence of the whole is above
-        its own by this [-]: odds of 400, by which an effect shows a gap, too. Doubled: two causes are seldom sure.
+        its own by this [-]: odds of 400, by which an effect shows a gap, too. Doubled: odds of 160 000, which only
+        pairs reach whose causes both show plainly.
     split_sigma : float
         A cause whose size in one half of the data is further from that in the other names nothing [sigma]: by chance
         1 in 400 for each of its parameters. Doubled: only a cause that is wrong by far is found out.
@@ -84,7 +85,8 @@ class DecisionRules:
         A second kind of data carries the gap, too, if the logarithm of its probability is this share of the first's
         [-]. Judged. Doubled: it would have to be as improbable as the first.
     closable_gap : float
-        A gap within this many times the floor has nothing to close [-]. The contract's.
+        A gap within this many times the floor has nothing to close [-]. The contract's. Doubled: a cause that closes
+        too little of a gap of two to three floors is not refused for that.
     likely_all_the_same : float
         From this probability on that there is some cause, the summary names it, though chance might make the gap
         [-].

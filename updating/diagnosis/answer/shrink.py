@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.diagnosis.answer.closing import Closed, HeldPoints, Metric, Shrink
 from updating.diagnosis.answer.metric import Squares, metric_of, noise_squares, squares
-from updating.diagnosis.answer.result import Closed, HeldPoints, Metric, Shrink
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2
 
-from acquisition.arrays import FloatArray
-from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Shortcoming, Verdict
+from updating.diagnosis.answer.in_no_library import SOMETHING_ELSE
+from updating.diagnosis.answer.quantiles import quantiles
+from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
+from updating.diagnosis.answer.result import Shortcoming, Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
@@ -70,6 +72,7 @@ def decide(
     lacks: Shortcoming | None = None,
     *,
     significant: bool,
+    unnamed: float = 0.0,
     rules: DecisionRules = DEFAULT_RULES,
 ) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
     """Return the verdict and the sets of effects it rests on.
@@ -82,6 +85,8 @@ def decide(
         What :func:`shortcoming` states.
     significant : bool
         Whether there is a gap.
+    unnamed : float
+        Probability that the cause is in no library [-].
     rules : DecisionRules
         What the answer is decided by.
     """
@@ -89,7 +94,7 @@ def decide(
         return "none", ()
     if lacks:
         return "unknown", ()
-    sets = _credible(found, rules)
+    sets = _credible(found, rules, unnamed)
     return ("class", sets) if len(sets) > 1 else ("named", sets)
 
 
@@ -149,16 +154,18 @@ def _better(found: Search, rules: DecisionRules) -> list[Compared]:
     return [row for row in rows if row.explanation.log_evidence > _of_nothing(found, row) + least]
 
 
-def _credible(found: Search, rules: DecisionRules) -> tuple[tuple[str, ...], ...]:
+def _credible(found: Search, rules: DecisionRules, unnamed: float = 0.0) -> tuple[tuple[str, ...], ...]:
     """Return the fewest sets that hold the certainty asked for, and those that fit as well as the first.
+
+    A cause in no library is one of them, the last, where it holds what is left of that, or a single set holds less
+    with it.
 
     All sets have a share: one whose parameter lies at the end of its range, or which fits badly, is no answer by
     itself, and what it holds makes the others no more certain. What setting data aside explains without it is no cause
     and has none. Where no set is better than no effect there are no sets. A rival whose best parameters fit as well is
     behind by its prior alone: by how many parameters it has, and how widely they may range, and that is no
     measurement. A part of the first that fits by itself stays, too, unless the whole is better by as much as shows a
-    gap: that there is something beside it is the more probable, and not sure. What adds to the first a cause that
-    shows in no datum makes the same statement about the data as the first, and counts for it.
+    gap: that there is something beside it is the more probable, and not sure.
     """
     better = _better(found, rules)
     if not better:
@@ -169,26 +176,50 @@ def _credible(found: Search, rules: DecisionRules) -> tuple[tuple[str, ...], ...
         for row in found.compared
         if row.names and row.explanation.log_evidence > row.without + rules.beyond_nothing
     ]
-    total = sum(row.probability for row in rows)
-    faint = [row for row in rows if row is not first and _adds_nothing(first, row, rules)]
+    stated = _statements(first, rows, rules)
+    total = max(sum(row.probability for row in rows), 1e-300)
     sets: list[tuple[str, ...]] = []
-    held = sum(row.probability for row in faint) / max(total, 1e-300)
-    for row in rows:
-        if row in faint:
-            continue
+    held = listed = 0.0
+    for row, probability in stated:
         alike = row in better and (
             (_close(first, row, rules) and _as_good(first, row, rules)) or _part_left(first, row, rules)
         )
         if held < rules.credible_share or alike:
             sets.append(row.names)
-        held += row.probability / max(total, 1e-300)
+            listed += probability / total
+        held += probability / total
+    alone = len(sets) == 1 and unnamed > 0 and (1 - unnamed) * listed < rules.credible_share
+    if sets and (alone or unnamed > 1 - rules.credible_share):
+        sets.append((SOMETHING_ELSE,))
     return tuple(sets)
 
 
-def _adds_nothing(first: Compared, row: Compared, rules: DecisionRules) -> bool:
-    """Return whether a set is the first with more causes, and fits no better."""
-    gain = row.explanation.best.marginal.log_likelihood - first.explanation.best.marginal.log_likelihood
-    return holds(row.names, first.names) and 2 * gain < rules.close_fits
+def _statements(
+    first: Compared, rows: Sequence[Compared], rules: DecisionRules
+) -> list[tuple[Compared, float]]:
+    """Return the sets that say different things about the data, with the probability that each holds [-].
+
+    What adds to a set a cause that shows in no datum makes the same statement as that set, and counts for it.
+    """
+    own: list[tuple[Compared, list[Compared]]] = []
+    for row in sorted(rows, key=lambda row: (row is not first, len(row.names))):
+        base = next((faint for one, faint in own if _adds_nothing(one, row, rules)), None)
+        if base is None:
+            own.append((row, [row]))
+        else:
+            base.append(row)
+    place = {id(row): index for index, row in enumerate(rows)}
+    return [
+        (row, sum(one.probability for one in faint))
+        for row, faint in sorted(own, key=lambda pair: place[id(pair[0])])
+    ]
+
+
+def _adds_nothing(base: Compared, row: Compared, rules: DecisionRules) -> bool:
+    """Return whether a set is another with more causes, and fits no better."""
+    gain = row.explanation.best.marginal.log_likelihood - base.explanation.best.marginal.log_likelihood
+    more = row is not base and holds(row.names, base.names)
+    return more and 2 * gain < rules.close_fits
 
 
 def _part_left(first: Compared, row: Compared, rules: DecisionRules) -> bool:
@@ -293,7 +324,7 @@ def estimates(
     drawn = [problem.values(candidate, u) for u in samples]
     result = {}
     for name, parameter in searched:
-        low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
+        low, middle, high = quantiles(np.array([d[name] for d in drawn]), weights)
         scale = two_sided * parameter.scale_doubt * middle
         low, high = (
             middle - float(np.hypot(middle - low, scale)),
@@ -315,7 +346,7 @@ def estimates(
             result[name] = ParameterEstimate(drawn[0][name], unit, None, None, False)
     derived = [problem.derived(candidate, u) for u in samples]
     for name, (_, unit) in derived[0].items():
-        low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)
+        low, middle, high = quantiles(np.array([d[name][0] for d in derived]), weights)
         result[name] = ParameterEstimate(middle, unit, low, high, at_bound=False)
     return result
 
@@ -334,11 +365,3 @@ def _at_form_places(
                 low, high = max(at - beside, 0.0), min(at + beside, size)
                 found[f"{effect.key}.{axis}"] = ParameterEstimate(at, "m", low, high, at_bound=False)
     return found
-
-
-def _quantiles(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
-    """Return the weighted 2.5, 50 and 97.5 % quantiles, interpolated between samples."""
-    order = np.argsort(values)
-    share = np.cumsum(weights[order]) - 0.5 * weights[order]
-    low, middle, high = np.interp([0.025, 0.5, 0.975], share, values[order])
-    return float(low), float(middle), float(high)

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.clusters import Cluster, clusters, sampled_places
-from updating.diagnosis.answer.contributions import contributions
-from updating.diagnosis.answer.result import LikelyPlace, Place, Verdict, Where, Zone
+from updating.diagnosis.answer.contributions import Contributions, contributions
+from updating.diagnosis.answer.located import LikelyPlace, Where, Zone
+from updating.diagnosis.answer.result import Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
-from updating.effects.box import LIKE
+from updating.effects.box import LIKE, Place
 from updating.effects.measurement.points import channel_point
 from updating.effects.regions import named_places
 from updating.localisation import areas, centres, compare_regions, regions_at
@@ -53,24 +54,13 @@ def locate(
     shares, nothing = _channels(found if whole is None else whole)
     seen = contributions(problem)
     if verdict == "none":
-        zones = _zones(problem, _by_explanations(problem, found))
-        stated = {**shares, "none": nothing}
-        return Where(
-            channel="none",
-            channels=stated,
-            location=None,
-            locations=(),
-            points=(),
-            zones=zones,
-            modes=seen.modes,
-            band=seen.summary,
-        )
+        return _nowhere(problem, found, {**shares, "none": nothing}, seen)
     together = acting_together(shares, rules=rules)
     top = together[0]
     leader = next((row for row in found.compared if row.names), None)
     likely_places = () if leader is None else _likely_places(problem, leader, together, rules)
-    places = tuple(_place(cluster.place) for cluster in likely_places)
-    nearest = _nearest(problem, likely_places, rules.concerned_reach)
+    places = tuple(_place(cluster.place) for _, cluster in likely_places)
+    nearest = _nearest(problem, [cluster for _, cluster in likely_places], rules.concerned_reach)
     unknown = verdict == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
@@ -81,11 +71,30 @@ def locate(
         points=_points(problem, leader) or nearest,
         zones=_zones(problem, probability),
         zones_by="regions" if unknown else "explanations",
-        likely_places=tuple(LikelyPlace(_place(c.place), _place(c.spread), c.weight) for c in likely_places),
+        likely_places=tuple(
+            LikelyPlace(_place(c.place), _place(c.spread), c.weight, name, c.likely_place)
+            for name, c in likely_places
+        ),
         modes=seen.modes,
         band=seen.summary,
         nearest=nearest,
         names=_names(leader),
+    )
+
+
+def _nowhere(
+    problem: SpecimenProblem, found: Search, channels: dict[str, float], seen: Contributions
+) -> Where:
+    """Return what is stated of the place where there is no gap."""
+    return Where(
+        channel="none",
+        channels=channels,
+        location=None,
+        locations=(),
+        points=(),
+        zones=_zones(problem, _by_explanations(problem, found)),
+        modes=seen.modes,
+        band=seen.summary,
     )
 
 
@@ -113,20 +122,20 @@ def acting_together(shares: Mapping[str, float], *, rules: DecisionRules = DEFAU
 
 def _likely_places(
     problem: SpecimenProblem, leader: Compared, channels: tuple[str, ...], rules: DecisionRules
-) -> tuple[Cluster, ...]:
-    """Return the places of an explanation in all channels that act together.
+) -> tuple[tuple[str, Cluster], ...]:
+    """Return the places of an explanation in all channels that act together, each with its channel.
 
     On imported matrices places are forms of their own: what these data cannot separate from the best are places, too.
     """
     forms = [(leader.explanation, 1.0)]
     if not problem.predictor.spec.outlined:
         forms = [form for form in leader.forms if form[0].names == leader.names] or forms
-    near, found = LIKE * problem.predictor.spec.length, list[Cluster]()
+    near, found = LIKE * problem.predictor.spec.length, list[tuple[str, Cluster]]()
     for explanation, share in forms:
         for name in channels:
             for cluster in clusters(problem, explanation, name, rules=rules):
-                if all(np.linalg.norm(cluster.place - known.place) > near for known in found):
-                    found.append(replace(cluster, weight=share * cluster.weight))
+                if all(np.linalg.norm(cluster.place - known.place) > near for _, known in found):
+                    found.append((name, replace(cluster, weight=share * cluster.weight)))
     return tuple(found)
 
 
@@ -158,7 +167,7 @@ def _points(problem: SpecimenProblem, leader: Compared | None) -> tuple[int, ...
     return tuple(dict.fromkeys(map(int, nodes + sensors)))
 
 
-def _nearest(problem: SpecimenProblem, likely_places: tuple[Cluster, ...], reach: float) -> tuple[int, ...]:
+def _nearest(problem: SpecimenProblem, likely_places: Sequence[Cluster], reach: float) -> tuple[int, ...]:
     """Return the test nodes at the places."""
     test, spec = problem.measured, problem.predictor.spec
     if not likely_places or not len(test.points):

@@ -69,7 +69,7 @@ def columns(
         moved = field.copy()
         moved[k, region] += step
         slopes[k, region] = (here.residual - compared(problem, explanation, moved).residual) / step
-    slopes = np.nan_to_num(slopes)
+    slopes[~np.isfinite(slopes)] = 0.0  # no prediction there
     carried = replace(here, residual=here.residual + np.einsum("kr,krn->n", field, slopes))
     regions = {name: slopes[k].T for k, name in enumerate(PROPERTIES)}
     return Columns(carried, regions, np.eye(len(here.residual))[:, here.of("damping")], _gain(problem, here))
@@ -79,7 +79,6 @@ def compared(problem: SpecimenProblem, explanation: Explanation, field: FloatArr
     """Compare the data with an explanation at its best and a field (2, r) on it, see :func:`columns`."""
     candidate, best = explanation.candidate, explanation.best
     (state,) = problem.place(candidate, best.coordinates)
-    stated = None if best.about is None else best.about[: len(problem.names)]
     changed = State(
         regional={
             (region, name): float(np.exp(values[region]))
@@ -87,7 +86,7 @@ def compared(problem: SpecimenProblem, explanation: Explanation, field: FloatArr
             for region in np.flatnonzero(values).tolist()
         }
     )
-    found = problem.compare(state.plus(changed), stated, doubt=candidate.doubt_on(problem.predictor))
+    found = problem.compare(state.plus(changed), best.about, doubt=candidate.doubt_on(problem.predictor))
     if len(best.coordinates):  # its parameters become nuisances, which join the channels
         found = found.channels_settled(best.marginal.judged)
     return with_outliers(found, candidate.outliers)

@@ -9,7 +9,8 @@ and what that leaves out of their own evidence is alike in both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import product
 
@@ -90,14 +91,32 @@ class Field:
     changes : (2, r) array
         Most probable logarithm of the factor of each of ``PROPERTIES`` in each region, and in what is in none, the
         last [-].
-    sigma : (2, r) array
-        Their standard deviations [-].
+    spread : (2 r, 2 r) array
+        Their covariance [-].
+    shares : mapping of Kind to float
+        Probability of each choice, given that there is a field [-].
     """
 
     log_factor: float
     kind: Kind
     changes: FloatArray
-    sigma: FloatArray
+    spread: FloatArray
+    shares: Mapping[Kind, float] = field(default_factory=dict)
+
+    @property
+    def sigma(self) -> FloatArray:
+        """Standard deviations of the changes, (2, r) [-]."""
+        return np.asarray(np.sqrt(np.diag(self.spread)).reshape(self.changes.shape))
+
+    def smooth(self, name: str) -> float:
+        """Return the probability that a property changes smoothly, given that it does: not over the shortest length."""
+        free = {kind: share for kind, share in self.shares.items() if name in kind.properties}
+        return sum(share for kind, share in free.items() if kind.length) / max(sum(free.values()), 1e-300)
+
+    def changes_of(self, attribute: str) -> float:
+        """Return the probability of the choices that leave a property, or ``loss`` or ``gain``, free [-]."""
+        free = (attribute in kind.properties or getattr(kind, attribute, 0.0) > 0 for kind in self.shares)
+        return float(sum(share for share, one in zip(self.shares.values(), free, strict=True) if one))
 
 
 def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = Grid()) -> Field:
@@ -113,11 +132,11 @@ def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = G
         What is summed over.
     """
     factors = correlations(problem.predictor.spec, grid.lengths)
-    free = np.nan_to_num(sensitivities(problem, explanation.candidate, explanation.best))
-    field = np.zeros((len(PROPERTIES), len(factors[0])))
-    plain, nearest, best = -np.inf, np.inf, Field(-np.inf, Kind(), field, field)
+    free = sensitivities(problem, explanation.candidate, explanation.best)
+    there = np.zeros((len(PROPERTIES), len(factors[0])))
+    plain, nearest, best = -np.inf, np.inf, Field(-np.inf, Kind(), there, np.zeros((there.size, there.size)))
     for once in range(grid.rounds):
-        here = columns(problem, explanation, field)
+        here = columns(problem, explanation, there)
         found = {kind: _marginal(here, kind, factors, free) for kind in _kinds(here, grid, len(factors))}
         without = found.pop(Kind()).log_likelihood
         plain = plain if once else without
@@ -127,16 +146,18 @@ def beside(problem: SpecimenProblem, explanation: Explanation, *, grid: Grid = G
         if not (np.isfinite(plain) and np.isfinite(total)):
             break
         top = max(found, key=lambda kind: found[kind].log_likelihood)
-        moved, sigma = _most_probable(here, top, factors, free)
+        moved, spread = _most_probable(here, top, factors, free)
         moved = np.clip(moved, -grid.farthest, grid.farthest)
-        off = float(np.abs(moved - field).max())
+        off = float(np.abs(moved - there).max())
         if off < nearest:
-            nearest, best = off, Field(total - plain, top, moved, sigma)
+            shares = {kind: one.log_likelihood - total - np.log(len(found)) for kind, one in found.items()}
+            shares = {kind: float(np.exp(share)) for kind, share in shares.items()}
+            nearest, best = off, Field(total - plain, top, moved, spread, shares)
         height = partial(_height, problem, explanation, here, top, factors, free)
-        following = max((field + step * (moved - field) for step in grid.steps), key=height)
-        if off < grid.at_rest or np.abs(following - field).max() < grid.at_rest:
+        following = max((there + step * (moved - there) for step in grid.steps), key=height)
+        if off < grid.at_rest or np.abs(following - there).max() < grid.at_rest:
             break
-        field = following
+        there = following
     return best
 
 
@@ -184,15 +205,16 @@ def _height(
 def _most_probable(
     here: Columns, kind: Kind, factors: list[FloatArray], free: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the most probable logarithms of the factors, and their standard deviations, (2, r) each [-]."""
+    """Return the most probable logarithms of the factors (2, r), and their covariance (2 r, 2 r) [-]."""
     found = _marginal(here, kind, factors, free)
     settled = found.settle(_with(here, kind, factors, free))
     whole, noise = settled.nuisance, settled.noise(found.scale)
     precision = np.eye(whole.shape[1]) + (whole.T / noise) @ whole
-    spread, lower = np.linalg.inv(precision), kind.amplitude * factors[kind.length]
-    field, sigma = np.zeros((2, len(PROPERTIES), len(lower)))
+    standard, lower = np.linalg.inv(precision), kind.amplitude * factors[kind.length]
+    count = len(lower) * len(kind.properties)
+    mapping = np.zeros((len(PROPERTIES) * len(lower), count))
     for k, name in enumerate(kind.properties):
-        own = slice(k * len(lower), (k + 1) * len(lower))
-        field[PROPERTIES.index(name)] = lower @ found.shift[own]
-        sigma[PROPERTIES.index(name)] = np.sqrt(np.einsum("ij,jk,ik->i", lower, spread[own, own], lower))
-    return field, sigma
+        rows = PROPERTIES.index(name) * len(lower)
+        mapping[rows : rows + len(lower), k * len(lower) : (k + 1) * len(lower)] = lower
+    changes = (mapping @ found.shift[:count]).reshape(len(PROPERTIES), -1)
+    return changes, np.asarray(mapping @ standard[:count, :count] @ mapping.T)

@@ -11,6 +11,7 @@ from scipy.special import expit, logit, logsumexp
 from updating.diagnosis.answer.in_no_library import RegionalChange, SomethingElse
 from updating.diagnosis.answer.rules import DecisionRules
 from updating.diagnosis.generic.field import Field, beside
+from updating.diagnosis.generic.parts import channels, parts
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.prior import log_prior
@@ -52,8 +53,10 @@ def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRule
     more = [one + prior for one in _first_and_more(problem, found, sets[0], first)]
     others = logsumexp([*own, *more])
     share = float(expit(evidence - others)) if np.isfinite(evidence) else 0.0
-    changes = _changes(problem.predictor.spec, alone[int(np.argmax(scores))][1])
-    return SomethingElse(share, first.log_factor, changes)
+    best = alone[int(np.argmax(scores))][1]
+    return SomethingElse(
+        share, first.log_factor, _changes(problem.predictor.spec, best), channels(best), parts(problem, best)
+    )
 
 
 def _first_and_more(problem: SpecimenProblem, found: Search, row: Compared, first: Field) -> list[float]:

@@ -8,10 +8,11 @@ a cause that is named those that separate it from its most probable rival, since
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+from updating.diagnosis.answer.mechanism import Mechanism
 from updating.diagnosis.answer.result import NextTest, Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial, separation
@@ -60,6 +61,7 @@ def propose(
     found: Search,
     sets: tuple[tuple[str, ...], ...],
     verdict: Verdict = "class",
+    mechanisms: Sequence[Mechanism] = (),
     *,
     separated: float = DEFAULT_RULES.separated_sigma,
     worthwhile: float = 1.0,
@@ -78,6 +80,8 @@ def propose(
     verdict : str
         What was decided. A cause that is named is separated from its runners-up, to confirm it, the most probable of
         them first.
+    mechanisms : sequence of Mechanism
+        What the answer changes. Where no set is an answer the first tests are for these.
     separated : float
         The rule ``separated_sigma`` [sigma].
     worthwhile : float
@@ -86,7 +90,8 @@ def propose(
         So many tests are proposed: what a reader takes in.
     """
     if verdict == "unknown":
-        return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[:most]
+        sites = _sites(diagnosis_problem)
+        return tuple(advice for site in sites for advice in advise(site, found, mechanisms))[:most]
     rivals = _rivals(diagnosis_problem, found, sets, verdict)
     if len(rivals) < 2:
         return ()

@@ -49,7 +49,7 @@ class Rival:
     def spread(self) -> FloatArray:
         """Covariance of nuisances and prior quantiles given all data so far, linearised at the best."""
         best = self.explanation.best
-        own = np.nan_to_num(sensitivities(self.diagnosis_problem, self.explanation.candidate, best))
+        own = sensitivities(self.diagnosis_problem, self.explanation.candidate, best)
         columns = np.hstack([best.comparison.nuisance, own])
         count = best.comparison.nuisance.shape[1]
         prior = np.concatenate([np.ones(count), np.full(own.shape[1], UNIFORM)])

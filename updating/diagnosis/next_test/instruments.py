@@ -10,7 +10,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
 from updating.diagnosis.next_test.instrument_reading import InstrumentReading, Parts
 from updating.effects.base import total_mass
-from updating.effects.structure.mass import sensor_places
+from updating.effects.structure.sensors import sensor_places
 from updating.models.state import State
 
 PER_LENGTH = {"density": 1.0, "thickness": 1.0, "width": 1.0, "section": 1.0, "area": 1.0}

@@ -11,7 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
 from updating.diagnosis.next_test.places import grid, statement
 from updating.diagnosis.next_test.repeat import Repeat
-from updating.effects.structure.mass import sensor_places
+from updating.effects.structure.sensors import sensor_places
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
 

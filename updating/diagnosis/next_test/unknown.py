@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.diagnosis.answer.mechanism import Mechanism
 from updating.diagnosis.answer.result import NextTest
 from updating.diagnosis.next_test.base import Site
 from updating.diagnosis.next_test.places import in_liquid
@@ -12,8 +15,34 @@ from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.search import Search
 from updating.problem.specimen import SpecimenProblem
 
+AT_A_PLACE: Mapping[str, str] = {
+    "stiffness": "look for a crack, a loose joint, a rib or a repair {where}, and touch the structure there; take off "
+    "what holds it, and repeat the test",
+    "mass": "look for a body, a layer or a filling {where}, take it off and repeat the test",
+    "damping": "look for what rubs or sticks {where}, take it off and repeat the test",
+    "measurement": "hit again, with another cable and sensor, {where}",
+}
+"""What settles a change of each channel at a place."""
 
-def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...]:
+EVERYWHERE: Mapping[str, str] = {
+    "stiffness": "measure thickness and length of the specimen, and the modulus of its material",
+    "mass": "weigh the specimen",
+    "damping": "repeat the test on other supports, without window, at another temperature: this shows what damps",
+    "measurement": "calibrate all channels with a known free mass, and repeat the test",
+}
+"""What settles a change of each channel all over."""
+
+
+def settling(mechanism: Mechanism) -> str:
+    """Return what to do to settle what a cause in no library is."""
+    placed = mechanism.extent != "global" and bool(mechanism.locations)
+    text = (AT_A_PLACE if placed else EVERYWHERE)[mechanism.channel]
+    return text.format(where=mechanism.where)
+
+
+def advise(
+    site: Site, found: Search, mechanisms: Sequence[Mechanism] = (), *, fewest: int = 4
+) -> tuple[NextTest, ...]:
     """Return what to do next where nothing explains the gap.
 
     Parameters
@@ -22,13 +51,15 @@ def advise(site: Site, found: Search, *, fewest: int = 4) -> tuple[NextTest, ...
         The specimen.
     found : Search
         What was compared.
+    mechanisms : sequence of Mechanism
+        What a cause in no library changes, the leading one first; the first tests are for these.
     fewest : int
         With fewer points more of them are asked for: shapes of a few points are alike.
     """
     problem = site.problem
     spec, test = problem.predictor.spec, problem.measured
     least_bad = next((row.explanation for row in found.compared if row.names), found.nothing)
-    stated = []
+    stated = list(dict.fromkeys(settling(one) for one in mechanisms[:2]))
     points = _points_that_miss(site, problem, least_bad)
     if points:
         stated.append(

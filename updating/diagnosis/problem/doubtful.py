@@ -49,7 +49,7 @@ def notes_on_doubtful(
     if len(error) >= 4:
         away = np.abs(error - np.median(error))
         bar = max(alone, deviations * float(np.median(away)))
-        settle = "a mistake, or a mode paired wrongly? Settle this before drawing conclusions"
+        settle = "check for a mistake or a wrong pair before you draw conclusions"
         if explained:
             settle = (
                 f"{explained} explains it and depends on it: make sure that it is neither a mistake "

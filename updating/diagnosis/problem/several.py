@@ -81,8 +81,8 @@ class Several:
         return any(problem.wide for problem in self.specimens)
 
     def strain(self, shift: FloatArray) -> float:
-        """Return the largest relative change that tolerances make of a property on any of the specimens [-]."""
-        parts = np.split(shift, np.cumsum([len(problem.names) for problem in self.specimens])[:-1])
+        """Return the largest relative change that nuisances make of a property on any of the specimens [-]."""
+        parts = np.split(shift, np.cumsum([problem.linearised for problem in self.specimens])[:-1])
         return max(problem.strain(part) for problem, part in zip(self.specimens, parts, strict=True))
 
     def applies(self, effect: Effect) -> Obstacle | None:
@@ -229,9 +229,9 @@ class Several:
         for i, (problem, own) in enumerate(
             zip(self.specimens, self._split(candidate, coordinates), strict=True)
         ):
-            stated = None if shift is None else shift[start : start + len(problem.names)]
-            part = self._compared(candidate, i, own, stated)
-            start += part.nuisance.shape[1]
+            end = start + problem.linearised
+            part = self._compared(candidate, i, own, None if shift is None else shift[start:end])
+            start = end
             parts.append(part)
         return with_outliers(join(parts), candidate.outliers)
 

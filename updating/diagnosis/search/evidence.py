@@ -7,15 +7,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
+from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
+from updating.diagnosis.search.fit import Peak, Point, evaluate, evaluate_many, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.ridges import along_ridge
 from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, effective
 from updating.problem.candidate import Candidate
 from updating.problem.screening import basins
+from updating.steps import SingleCause
 from updating.thresholds import (
     AT_REST,
     CLIMBS,
@@ -71,6 +73,11 @@ class Explanation:
     def p_value(self) -> float:
         """How well the best parameters fit: the p-value of chi-squared over all data and each channel [-]."""
         return p_value(self.best, self.samples.shape[1])
+
+    @property
+    def tops(self) -> list[FloatArray]:
+        """Prior quantiles of its maxima, from which to search where little is different."""
+        return [peak.point.coordinates for peak in self.peaks] or [self.best.coordinates]
 
     @property
     def effective(self) -> float:
@@ -153,17 +160,28 @@ def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int 
     return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
 
 
-def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
+def _sampled(
+    problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int, *, at_once: int = 16
+) -> Explanation:
+    """Return the evidence by predictions at samples about maxima, ``at_once`` at a time to bound the memory.
+
+    Where the prediction has to be linearised anew each sample begins at the nearest one before, so one at a time.
+    """
+    at_once = 1 if problem.wide else at_once
     peaks = [*peaks, *along_ridge(problem, candidate, peaks[0])]
     best = max((peak.point for peak in peaks), key=_height)
+    known = [(peak.point.coordinates, peak.point.about) for peak in peaks]
 
     def log_likelihood(samples: FloatArray) -> FloatArray:
         nonlocal best
-        heights = np.empty(len(samples))
-        for i, u in enumerate(samples):
-            point = evaluate(problem, candidate, u, near=peaks[0].point)
-            heights[i], best = _height(point), max(best, point, key=_height)
-        return heights
+        heights: list[float] = []
+        for some in np.array_split(samples, -(-len(samples) // at_once)) if len(samples) else ():
+            places = np.array([there for there, _ in known])
+            nearest = ((some[:, None] - places) ** 2).sum(axis=2).argmin(axis=1)
+            points = evaluate_many(problem, candidate, some, abouts=[known[i][1] for i in nearest])
+            heights, best = heights + [_height(point) for point in points], max(best, *points, key=_height)
+            known.extend((point.coordinates, point.about) for point in points)
+        return np.array(heights)
 
     found = draw_posterior(
         log_likelihood, about(peaks), min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE)
@@ -197,7 +215,7 @@ def _peaks(
     problem: DiagnosisProblem, candidate: Candidate, places: list[FloatArray], maximisations: int, bar: float
 ) -> list[Peak]:
     if len(places) > maximisations:
-        evaluations = [evaluate(problem, candidate, place) for place in places]
+        evaluations = evaluate_many(problem, candidate, places)
         heights = np.array([evaluation.marginal.log_likelihood for evaluation in evaluations])
         nearest = np.argsort(heights)[::-1][:STARTS_TRIED]
         if _on_a_line(places):
@@ -237,3 +255,21 @@ def _distinct(points: Sequence[Point]) -> list[int]:
         if all(np.abs(here - points[j].coordinates).max() >= SAME_PEAK for j in kept):
             kept.append(i)
     return kept
+
+
+def single_cause(name: str, found: Sequence[Explanation], nothing: Explanation) -> SingleCause:
+    """Return an effect by those of its forms that are compared.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    found : sequence of Explanation
+        All that is compared so far; a form of the effect is among it.
+    nothing : Explanation
+        No effect at all.
+    """
+    own = [one for one in found if one.names == (name,)]
+    best = max(own, key=lambda one: one.log_evidence)
+    total = float(logsumexp([one.log_evidence for one in own]))
+    return SingleCause(name, total - nothing.log_evidence, best.p_value)

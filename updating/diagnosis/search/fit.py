@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.gaussian import Marginal, marginal, normal_equations
+from updating.likelihood.gaussian import Marginal, marginals, normal_equations
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
     AT_REST,
@@ -39,8 +40,8 @@ class Point:
         Data against prediction there, at the most probable size of the doubt in the idealisation.
     marginal : Marginal
         Its marginal likelihood.
-    about : (p,) array, optional
-        Nuisances about which tolerances were linearised; None is about none [standard deviations].
+    about : (l,) array, optional
+        Nuisances about which the prediction was linearised; None is about none [standard deviations].
     """
 
     coordinates: FloatArray
@@ -90,58 +91,85 @@ def evaluate(
     coordinates: FloatArray,
     *,
     keep: BoolArray | None = None,
-    near: Point | None = None,
+    about: FloatArray | None = None,
 ) -> Point:
-    """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide.
+    """Compare a candidate with the data at one place, the first linearisation ``about`` some nuisances."""
+    return evaluate_many(problem, candidate, [coordinates], keep=keep, abouts=[about])[0]
 
-    The first linearisation is where that of a point ``near`` by came to rest: mostly none is needed after it. Where
-    the linearisation swings, the one whose most probable tolerances lie nearest to where it was made stands.
+
+def evaluate_many(
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    places: Sequence[FloatArray] | FloatArray,
+    *,
+    keep: BoolArray | None = None,
+    abouts: Sequence[FloatArray | None] | None = None,
+) -> list[Point]:
+    """Compare a candidate with the data, re-linearised about the most probable nuisances where these bend it.
+
+    The first linearisation is about the nuisances of a point near by: mostly none is needed after it. Where the
+    linearisation swings, the one whose most probable nuisances lie nearest to where it was made stands.
+
+    Parameters
+    ----------
+    problem, candidate, keep
+        As in :func:`maximise`.
+    places : sequence of n (k,) arrays
+        Prior quantiles [-].
+    abouts : sequence of n (l,) arrays or None
+        About which nuisances each is linearised first; left out, about none [standard deviations].
     """
-    about = None if near is None else near.about
-    point = _linearised(problem, candidate, coordinates, about, keep)
+    first = [None] * len(places) if abouts is None else abouts
+    now = _linearised(problem, candidate, places, first, keep)
     if not problem.wide:
-        return point
-    best, left = point, _strain(problem, point, _wanted(point) - _about(point))
-    whole = True
+        return now
+    best, whole = list(now), [True] * len(now)
+    left = [problem.strain(_wanted(point) - _about(point)) for point in now]
     for _ in range(RELINEARISATIONS):
-        if left < STRAINED_LINEARISATION or not np.isfinite(left):
+        open_ = [i for i, strain in enumerate(left) if STRAINED_LINEARISATION <= strain < np.inf]
+        if not open_:
             break
-        about = _wanted(point) if whole else 0.5 * (_about(point) + _wanted(point))
-        point = _linearised(problem, candidate, coordinates, about, keep)
-        away = _strain(problem, point, _wanted(point) - about)
-        whole = away < 0.5 * left
-        if away < left:
-            best, left = point, away
+        moved = [_wanted(now[i]) if whole[i] else 0.5 * (_about(now[i]) + _wanted(now[i])) for i in open_]
+        tried = _linearised(problem, candidate, [places[i] for i in open_], moved, keep)
+        for i, point, about in zip(open_, tried, moved, strict=True):
+            away = problem.strain(_wanted(point) - about)
+            now[i], whole[i] = point, away < 0.5 * left[i]
+            if away < left[i] and point.possible:
+                best[i], left[i] = point, away
     return best
 
 
-def _strain(problem: DiagnosisProblem, point: Point, shift: FloatArray) -> float:
-    return problem.strain(shift[point.comparison.tolerances])
-
-
 def _about(point: Point) -> FloatArray:
-    return np.zeros(len(point.marginal.shift)) if point.about is None else point.about
+    return np.zeros(len(point.comparison.moving)) if point.about is None else point.about
 
 
 def _wanted(point: Point) -> FloatArray:
-    return np.clip(point.marginal.shift, -FARTHEST_TOLERANCE, FARTHEST_TOLERANCE)
+    return np.clip(point.marginal.shift[point.comparison.moving], -FARTHEST_TOLERANCE, FARTHEST_TOLERANCE)
 
 
 def _linearised(
     problem: DiagnosisProblem,
     candidate: Candidate,
-    coordinates: FloatArray,
-    about: FloatArray | None,
+    places: Sequence[FloatArray] | FloatArray,
+    abouts: Sequence[FloatArray | None],
     keep: BoolArray | None,
-) -> Point:
-    comparison = problem.at(candidate, coordinates, about)
-    found = marginal(comparison, keep)
-    return Point(coordinates, found.settle(comparison), found, about)
+) -> list[Point]:
+    comparisons = [problem.at(candidate, *place) for place in zip(places, abouts, strict=True)]
+    return [
+        Point(place, found.settle(comparison), found, about)
+        for place, about, comparison, found in zip(
+            places, abouts, comparisons, marginals(comparisons, keep), strict=True
+        )
+    ]
 
 
 def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:
-    """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    return _differences(problem, candidate, point, None, _plain_steps(point))[0]
+    """Return the change of the prediction per prior quantile, by differences, shape (n, k).
+
+    It is 0 where a structure beside the point is impossible, so that nothing is predicted there.
+    """
+    columns = _differences(problem, candidate, point, None, _plain_steps(point))[0]
+    return np.where(np.isfinite(columns), columns, 0.0)
 
 
 def _plain_steps(point: Point) -> FloatArray:
@@ -159,18 +187,12 @@ def _differences(
 
     ``sizes`` (k,) are those of the steps, which go towards the middle.
     """
-    columns, rises, steps = [], [], []
-    for i, (u, size) in enumerate(zip(point.coordinates, sizes.tolist(), strict=True)):
-        step = size if u < 0.5 else -size
-        moved = point.coordinates.copy()
-        moved[i] += step
-        there = problem.at(candidate, moved, point.about)
-        columns.append((point.comparison.residual - there.residual) / step)
-        rises.append((marginal(there, keep).log_likelihood - point.marginal.log_likelihood) / step)
-        steps.append(step)
-    count = len(point.comparison.residual)
-    whole = np.stack(columns, axis=1) if columns else np.zeros((count, 0))
-    return whole, np.array(rises), np.array(steps)
+    steps = np.where(point.coordinates < 0.5, sizes, -sizes)
+    there = [problem.at(candidate, moved, point.about) for moved in point.coordinates + np.diag(steps)]
+    residuals = np.array([one.residual for one in there]).reshape(len(there), len(point.comparison.residual))
+    heights = np.array([one.log_likelihood for one in marginals(there, keep)])
+    columns = (point.comparison.residual - residuals).T / steps
+    return columns, (heights - point.marginal.log_likelihood) / steps, steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,7 +338,7 @@ def _uphill(
         if not np.isfinite(step).all():
             break
         there = np.clip(point.coordinates + step, 0.0, 1.0)
-        trial = evaluate(problem, candidate, there, keep=keep, near=point)
+        trial = evaluate(problem, candidate, there, keep=keep, about=point.about)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
         promised = float(step @ gradient - 0.5 * step @ slope.normal @ step)
         stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0

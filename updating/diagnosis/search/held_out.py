@@ -86,7 +86,7 @@ def held_out(
     judges. Where nothing is left to fit, the residuals are nan.
     """
     best = explanation.best
-    columns = np.nan_to_num(sensitivities(diagnosis_problem, explanation.candidate, best))
+    columns = sensitivities(diagnosis_problem, explanation.candidate, best)
     errors = np.zeros(len(best.comparison.residual))
     for keep in parts:
         if not keep.any():

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.together import join, once_more, same_place_twice, score_tests
+from updating.steps import Steps
 from updating.thresholds import LARGER_SETS, SETS_ENLARGED
 
 
@@ -33,7 +34,9 @@ class _Draft:
         return tuple(sorted(self.base.names + self.other.names))
 
 
-def one_more(problem: DiagnosisProblem, found: list[Explanation], causes: int) -> list[Explanation]:
+def one_more(
+    problem: DiagnosisProblem, found: list[Explanation], causes: int, steps: Steps
+) -> list[Explanation]:
     """Add to the best sets the single effects that a score test finds the most promising.
 
     Parameters
@@ -44,6 +47,8 @@ def one_more(problem: DiagnosisProblem, found: list[Explanation], causes: int) -
         All sets scored so far.
     causes : int
         How many causes the larger sets have.
+    steps : Steps
+        Where it is announced how many are compared.
     """
     bases = [e for e in found if len(e.names) == causes - 1 and e.best.possible]
     bases.sort(key=lambda e: -e.log_evidence)
@@ -54,7 +59,7 @@ def one_more(problem: DiagnosisProblem, found: list[Explanation], causes: int) -
         drafts.setdefault(draft.names, draft)
     bar = max((e.best.marginal.log_likelihood for e in bases), default=0.0)
     larger: list[Explanation] = []
-    for draft in list(drafts.values())[:LARGER_SETS]:
+    for draft in steps.each(list(drafts.values())[:LARGER_SETS]):
         base, other = draft.base, draft.other
         whole = (base.candidate, base.best.coordinates)
         larger.append(join(problem, whole, (other.candidate, other.best.coordinates), bar))

@@ -71,7 +71,7 @@ def with_odd_data(problem: DiagnosisProblem, found: Sequence[Explanation]) -> li
 def _choose(problem: DiagnosisProblem, explanation: Explanation) -> _Choice:
     """Take the groups of data as outliers, one after the other, whose price the rest of the data outweigh."""
     best = explanation.best
-    columns = np.nan_to_num(sensitivities(problem, explanation.candidate, best))
+    columns = sensitivities(problem, explanation.candidate, best)
     # the parameters follow as far as they may: nuisances, as wide as their priors
     free = replace(best.comparison, nuisance=np.hstack([best.comparison.nuisance, QUANTILE_SPREAD * columns]))
     chosen: tuple[Outlier, ...] = ()

@@ -74,7 +74,7 @@ def _back_on_top(
         step = across @ np.linalg.solve(normal + np.eye(len(normal)), across.T @ here.gradient)
         step *= share * min(1.0, RIDGE_STEP / max(np.abs(step).max(), 1e-300))
         there = np.clip(here.point.coordinates + step, 0.0, 1.0)
-        top = evaluate(problem, candidate, there, near=here.point)
+        top = evaluate(problem, candidate, there, about=here.point.about)
         gain = top.marginal.log_likelihood - here.point.marginal.log_likelihood
         if gain > 1.0:
             here, share = maximise(problem, candidate, top, rounds=0), 1.0

@@ -16,18 +16,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.special import logsumexp
 
-from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.evidence import Explanation, explain, finish
+from updating.diagnosis.search.evidence import Explanation, explain, finish, single_cause
 from updating.diagnosis.search.fewer import with_parts
 from updating.diagnosis.search.larger import one_more
 from updating.diagnosis.search.odd import with_odd_data
 from updating.diagnosis.search.prior import count_sets, log_prior
 from updating.diagnosis.search.sets import pairs_of
+from updating.diagnosis.search.theory import with_theory_named
 from updating.effects import Effect, Lack, Obstacle, Variant
 from updating.likelihood.outliers import Outlier
 from updating.problem.candidate import Candidate
 from updating.problem.theory_shows import theory_shows
+from updating.steps import SILENT, SingleCause, Steps
 from updating.thresholds import (
     COUNT_PRIOR,
     DOUBT_BEYOND_NOISE,
@@ -155,7 +156,7 @@ def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[
     return possible, {name: why for name, why in obstacles.items() if why is not None}
 
 
-def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
+def search(problem: DiagnosisProblem, library: Sequence[Effect], steps: Steps = SILENT) -> Search:
     """Evaluate no effect, every single effect, and sets of more where those of fewer do not explain the data.
 
     Parameters
@@ -164,29 +165,44 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
         Test and model.
     library : sequence of Effect
         Effects to consider.
+    steps : Steps
+        Where stages are announced.
     """
+    steps.begin("comparing single causes")
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
     both = _on_both(problem, effects, nothing)
     if both and _beneath(problem):
         nothing = _either(nothing, explain(problem, Candidate(fuller=True)))
-    found = _with_odd(problem, [], [nothing, *_singles(problem, effects, nothing, both=both)])
+    found = _with_odd(
+        problem, [], [nothing, *_singles(problem, effects, nothing, steps, both=both)], steps, "single causes"
+    )
     far = not _explained(problem, found, well=True)
     if far or _by_its_doubt(problem, found):
-        pairs = pairs_of(problem, _as_stated(found), far=far)
-        found = _with_odd(problem, found, pairs)
+        steps.begin("comparing pairs of causes")
+        pairs = pairs_of(problem, _as_stated(found), steps, far=far)
+        found = _with_odd(problem, found, pairs, steps, "pairs of causes")
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):
-            found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))
+            steps.begin(f"comparing sets of {causes} causes")
+            larger = one_more(problem, _as_stated(found), causes, steps)
+            found = _with_odd(problem, found, larger, steps, f"sets of {causes} causes")
     found = _finished(problem, with_parts(problem, found))
+    if both and not _beneath(problem) and len(problem.specimens) == 1:
+        found = _finished(problem, with_theory_named(problem, found, effects))
     repeated = sum(effect.repeats_on(problem.predictor) for effect in effects)
     return Search(nothing, _merged(problem, _compare(found)), obstacles, both, len(effects), repeated)
 
 
 def _with_odd(
-    problem: DiagnosisProblem, found: list[Explanation], drafts: list[Explanation]
+    problem: DiagnosisProblem,
+    found: list[Explanation],
+    drafts: list[Explanation],
+    steps: Steps,
+    what: str,
 ) -> list[Explanation]:
     """Add drafts, as the data are stated and with outliers, and finish what is within reach."""
+    steps.begin(f"integrating the probable {what}")
     together = _finished(problem, found + drafts)
     new = together[len(found) :]
     return _finished(problem, together + with_odd_data(problem, new)) if new else together
@@ -344,15 +360,18 @@ def _on_both(problem: DiagnosisProblem, effects: list[Effect], nothing: Explanat
 
 
 def _singles(
-    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, *, both: bool
+    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, steps: Steps, *, both: bool
 ) -> list[Explanation]:
     """Evaluate every form of every effect, the simple ones first: what they reach is the bar for the others."""
     forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
-    forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
+    sizes = [len(problem.parameters(Candidate((effect,), chosen=(form,)))) for effect, form in forms]
+    order = np.argsort(sizes, kind="stable")
     bar, found = nothing.best.marginal.log_likelihood, []
-    for effect, form in forms:
+    steps.found(SingleCause("", 0.0, nothing.p_value))
+    for effect, form in steps.each([forms[i] for i in order], [float(1 + sizes[i]) ** 2 for i in order]):
         found.append(_single(problem, effect, form, bar, both=both))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
+        steps.found(single_cause(effect.name, found, nothing))
     return found
 
 
@@ -364,12 +383,7 @@ def _single(
     if not both or effect.fuller:
         return plain
     fuller = Candidate((effect,), fuller=True, chosen=(form,))
-    return _either(plain, explain(problem, fuller, starts=_tops(plain), laplace_only=True, bar=bar))
-
-
-def _tops(plain: Explanation) -> list[FloatArray]:
-    """Return where the search on the other theory starts: what that moves is small, so that the maxima stay near."""
-    return [peak.point.coordinates for peak in plain.peaks] or [plain.best.coordinates]
+    return _either(plain, explain(problem, fuller, starts=plain.tops, laplace_only=True, bar=bar))
 
 
 def _either(plain: Explanation, fuller: Explanation) -> Explanation:

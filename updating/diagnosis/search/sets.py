@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import Point, evaluate, highest, sensitivities
+from updating.diagnosis.search.fit import Point, evaluate_many, highest, sensitivities
 from updating.diagnosis.search.prior import log_prior
 from updating.diagnosis.search.together import (
     Part,
@@ -25,6 +25,7 @@ from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
 from updating.problem.screening import beside
+from updating.steps import Steps
 from updating.thresholds import (
     FORMS_TRIED,
     PAIRS_ANEW,
@@ -35,10 +36,13 @@ from updating.thresholds import (
     SHIFT_SPREAD,
     STEP_INSIDE,
     STEPS_TRIED,
+    WITHIN_REACH,
 )
 
 
-def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) -> list[Explanation]:
+def pairs_of(
+    problem: DiagnosisProblem, found: list[Explanation], steps: Steps, *, far: bool
+) -> list[Explanation]:
     """Evaluate the pairs that promise the most, from the best of either effect alone and from no effect at all.
 
     Parameters
@@ -47,6 +51,8 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) 
         Test and model.
     found : list of Explanation
         No effect, and every single one.
+    steps : Steps
+        Where it is announced how many are compared.
     far : bool
         Whether no single effect explains the data well: the most promising pairs are compared in any case, and tested
         from no effect at all, too, about every starting place of either, an evaluation of each and some for its
@@ -78,7 +84,7 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) 
     chosen = _promising(drafts)
     if not all(one.predictor.spec.outlined for one in problem.specimens):
         chosen = _best_forms(problem, chosen, drafts)
-    for draft in chosen:
+    for draft in steps.each(chosen):
         parts = [(e.candidate, e.best.coordinates) for e in (draft.first, draft.second)]
         places = draft.places + (_placed(problem, parts) if far else [])
         pair = join(problem, parts[0], parts[1], bar, places=places)
@@ -185,7 +191,8 @@ def _in_other_forms(
     more.
 
     Score tests choose the forms of a pair by a linear step from one effect's best, where the other is not yet what it
-    is beside it: which law a damping follows shows only once a clamp has taken its share.
+    is beside it: which law a damping follows shows only once a clamp has taken its share, and so does whether a place
+    is softer or stiffer, and where it is.
     """
     parts, found = _parts_of_pair(problem, pair), []
     data, reached = len(pair.best.comparison.residual), pair.best.marginal.log_likelihood
@@ -198,10 +205,15 @@ def _in_other_forms(
             and not same_place_twice(problem, kept, single.candidate)
             and len(place) + len(single.best.coordinates) < data
         ]
-        heights = [_after_few_steps(problem, (kept, place), rival, []) for rival in rivals[:FORMS_TRIED]]
+        tried = rivals[:FORMS_TRIED]
+        places = [_placed(problem, [(kept, place), rival]) for rival in tried]
+        heights = [
+            _after_few_steps(problem, (kept, place), rival, own)
+            for rival, own in zip(tried, places, strict=True)
+        ]
         if heights and max(heights) > reached + pair.candidate.log_weight:
-            best = rivals[int(np.argmax(heights))]
-            found.append(join(problem, (kept, place), best, bar))
+            best = int(np.argmax(heights))
+            found.append(join(problem, (kept, place), tried[best], bar, places=places[best]))
     return found
 
 
@@ -241,17 +253,15 @@ class _Reach:
 
 def _reaches(problem: DiagnosisProblem, nominal: Point, candidate: Candidate) -> list[_Reach]:
     """Return what an effect may do about each of its starting places, the impossible ones left out."""
-    points = [evaluate(problem, candidate, place) for place in problem.starts(candidate)]
+    points = evaluate_many(problem, candidate, problem.starts(candidate))
     return [
         _Reach(
             point.coordinates,
-            np.nan_to_num(
-                np.column_stack(
-                    [
-                        SHIFT_SPREAD * (nominal.comparison.residual - point.comparison.residual),
-                        QUANTILE_SPREAD * sensitivities(problem, candidate, point),
-                    ]
-                )
+            np.column_stack(
+                [
+                    SHIFT_SPREAD * (nominal.comparison.residual - point.comparison.residual),
+                    QUANTILE_SPREAD * sensitivities(problem, candidate, point),
+                ]
             ),
         )
         for point in points
@@ -309,12 +319,14 @@ def _alike(
 ) -> list[Explanation]:
     """Try equivalents of each member of the best pair: one of the two in the place of an effect like it.
 
-    Such a rival may fit as well where it alone, at another place, fits too badly for the score test to choose it.
+    Such a rival may fit as well where it alone, at another place, fits too badly for the score test to choose it, or
+    where the search from the best of either alone has missed what the best pair shows.
     """
     best = max(pairs, key=lambda e: e.log_evidence, default=None)
     if best is None:
         return []
-    known, found = {tuple(sorted(e.names)) for e in pairs}, []
+    near = [e for e in pairs if e.log_evidence > best.log_evidence - WITHIN_REACH]
+    known, found = {tuple(sorted(e.names)) for e in near}, []
     data = len(best.best.comparison.residual)
     pair_parts = _parts_of_pair(problem, best)
     for (kept, place), (other, _) in (pair_parts, pair_parts[::-1]):

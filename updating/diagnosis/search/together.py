@@ -85,9 +85,10 @@ def score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> FloatA
         Row: whose best is the start; column: whose whole shift, and its sensitivities there, are added [-].
     """
     nominal = problem.at(Candidate(), np.zeros(0)).residual
-    own = [np.nan_to_num(sensitivities(problem, e.candidate, e.best)) for e in singles]
+    own = [sensitivities(problem, e.candidate, e.best) for e in singles]
     shifts = [(nominal - e.best.comparison.residual)[:, None] for e in singles]
-    everything = np.nan_to_num(np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)]))
+    everything = np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)])
+    everything[~np.isfinite(everything)] = 0.0  # a single that is impossible itself
     ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
     reached = np.full((len(singles), len(singles)), -np.inf)
     for i, leader in enumerate(singles):

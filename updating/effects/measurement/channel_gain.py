@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.measurement.gain import GAIN
 from updating.effects.measurement.points import channel_of, concerned, concerned_places, points_of
 from updating.effects.measurement.shape_screening import PROMISING, ShapeScreening, screen
 from updating.effects.obstacles import Obstacle, shape_obstacle
@@ -42,8 +43,7 @@ class ChannelGain(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the gain."""
-        why = "wrong sensitivity or charge range (a decade), g taken for m/s^2 (9.81), lbf for N (4.45)"
-        return (Parameter("gain", "-", 0.08, 12.5, why, log=True),)
+        return (GAIN,)
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from no gain: the constants are linear in it, so that there is one maximum."""

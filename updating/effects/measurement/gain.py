@@ -7,6 +7,16 @@ from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
+GAIN = Parameter(
+    "gain",
+    "-",
+    0.08,
+    12.5,
+    "wrong sensitivity or charge range (a decade), g taken for m/s^2 (9.81), lbf for N (4.45)",
+    log=True,
+)
+"""Gain of a measuring chain, or of one channel of it."""
+
 
 class CalibrationGain(Effect):
     """The absolute level of all FRFs is off by one factor; that of single channels is ``channel_gain``."""
@@ -30,8 +40,7 @@ class CalibrationGain(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the gain."""
-        why = "wrong sensitivity or charge range (a decade), g taken for m/s^2 (9.81), lbf for N (4.45)"
-        return (Parameter("gain", "-", 0.08, 12.5, why, log=True),)
+        return (GAIN,)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need absolute level."""

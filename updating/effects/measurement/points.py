@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
-import numpy as np
-
 from acquisition.errors import StudyError
+from updating.effects.box import as_places
 from updating.models.state import Role
 from updating.test_data.measured import Measured
 
@@ -33,9 +32,7 @@ def indices(measured: Measured, nodes: tuple[int, ...]) -> list[int]:
 
 def places(measured: Measured, nodes: tuple[int, ...]) -> tuple[tuple[float, float, float], ...]:
     """Return where some nodes lie [m]."""
-    points = measured.points[indices(measured, nodes)]
-    padded = np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
-    return tuple((float(x), float(y), float(z)) for x, y, z in padded)
+    return as_places(measured.points[indices(measured, nodes)])
 
 
 def channel_of(measured: Measured, point: int) -> str:

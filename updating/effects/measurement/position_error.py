@@ -7,6 +7,7 @@ import numpy as np
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import indices, places, points_of
 from updating.effects.measurement.shape_screening import PROMISING, screen
+from updating.effects.mechanism import Size
 from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -64,6 +65,10 @@ class PositionError(Effect):
             low, high = max(-far, -stated), min(far, size - stated)
             settled[name] = low + (high - low) * (values[name] + far) / (2 * far)
         return settled
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return how far the point lies away."""
+        return (Size("distance", float(np.hypot(values["dx"], values.get("dy", 0.0))), "m"),)
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the point moved."""

@@ -25,6 +25,7 @@ class SwappedPoints(Effect):
     equivalent_to = ("polarity", "position_error")
     separated_by = "hit the two points again"
     labels = ("points",)
+    exchanges = True
     phrase = "swapped test points"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:

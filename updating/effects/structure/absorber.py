@@ -6,7 +6,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
-from updating.effects.box import AXES, Place, mirror_images, outline, place, starting_places
+from updating.effects.box import AXES, Place, outline, place, starting_places, where_alike
+from updating.effects.mechanism import Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.structure.spring import SLIPS, lowest, measured_directions
 from updating.models.absorbers import Absorber as Hung
@@ -124,10 +125,14 @@ class Absorber(Effect):
         rows = _rows(predictor, values)
         return State(absorbers=tuple(Hung(row, mass, mass * omega**2, damping) for row in rows))
 
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the mass that swings."""
+        return (Size("mass on a spring", self.weight(predictor, values), "kg"),)
+
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place; where no shapes separate it from its mirror images, these too."""
         at = (*place(values)[:2], float(values.get("z", 0.0)))
-        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+        return where_alike(predictor, at)
 
 
 def _rows(predictor: Predictor, values: Values) -> FloatArray:

@@ -11,6 +11,7 @@ from scipy import sparse
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness
 from updating.effects.box import mirror_images
+from updating.effects.mechanism import INTEGRAL_COMPLIANCE, Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import WAYS, centre_of, one_of, way
 from updating.effects.structure.clamp_edges import (
@@ -67,6 +68,7 @@ class Clamp(Effect):
     models = ("beam", "plate", "matrices")
     named = ("support", "direction")
     fidelity = 0.02
+    of_supports = True
     undone_by = frozenset({"unclamped"})
     freed: ClassVar[Literal["rotation", "translation"]]
     """What the clamp no longer holds by itself."""
@@ -214,6 +216,15 @@ class Clamp(Effect):
             firm = RIGID * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
             held = held + firm * unit_edges(predictor, self.freed, others)
         return State(stiffness=(held,), released=frozenset({self.freed}))
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the stiffness against its kind of motion; of an edge that turns along all of it its compliance."""
+        spec, stiffness = predictor.spec, float(values["stiffness"])
+        held = Size(f"stiffness in {self.freed}", stiffness, self.units[spec.kind == "plate"])
+        turns = self.freed == "rotation" and spec.imported is None
+        if not turns or stretch_of(spec, released_edges(spec, values)[0], values) is not None:
+            return (held,)
+        return held, Size(INTEGRAL_COMPLIANCE, bending_stiffness(spec) / stiffness, "m")
 
     def _yielding(self, predictor: Predictor, support: Support, values: Values) -> Yielding:
         """Return a support on springs of one stiffness, in a direction or in all of this kind in which it holds."""

@@ -11,6 +11,7 @@ from scipy.optimize import nnls
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.mechanism import DAMPING_RATIO, Size
 from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.models.base import supports_at
 from updating.models.state import Loss, State
@@ -63,8 +64,7 @@ class UniformDamping(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the coefficients."""
-        hertz = predictor.measured.frequency
-        middle = 2 * np.pi * float(np.sqrt(hertz.min() * hertz.max()))
+        middle = _middle(predictor)
         less = "; or less than nothing, down to what is expected"
         lossy = f"damping ratios of {RATIOS[0]:g} to {RATIOS[1]:g} in the middle of the band{less}"
         decays = f"decays as those of windows{less}"
@@ -135,6 +135,12 @@ class UniformDamping(Effect):
         units = {p.name: p.unit for p in self.parameters(predictor)}
         return {n: (values[n], units[n]) for n in NAMES if n != lead and values[n] < 0}
 
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the damping ratio that it adds in the middle of the band."""
+        alpha, beta, loss = (float(values.get(name, 0.0)) for name in NAMES)
+        middle = _middle(predictor)
+        return (Size(DAMPING_RATIO, (alpha / middle + beta * middle + loss) / 2, "-"),)
+
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping."""
         return damping_obstacle(predictor)
@@ -155,6 +161,12 @@ class UniformDamping(Effect):
         if values["loss_factor"]:
             losses.append(Loss(values["loss_factor"] * stiffness, -1.0))
         return State(losses=tuple(losses))
+
+
+def _middle(predictor: Predictor) -> float:
+    """Return the middle of the measured band [rad/s]."""
+    hertz = predictor.measured.frequency
+    return 2 * np.pi * float(np.sqrt(hertz.min() * hertz.max()))
 
 
 def _decays(predictor: Predictor) -> tuple[FloatArray, FloatArray]:

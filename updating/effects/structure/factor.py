@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.mechanism import MASS_RATIO, STIFFNESS_OVER_MASS, STIFFNESS_RATIO, Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -16,11 +17,20 @@ RARER = 0.3
 class FactorEffect(Effect):
     """A property of the whole structure that is off by a factor."""
 
+    keeps_clamps = True
     factors: ClassVar[tuple[str, ...]]
     """Which factors of the model it multiplies."""
     low: ClassVar[float]
     high: ClassVar[float]
     why: ClassVar[str]
+    powers: ClassVar[tuple[tuple[str, int], ...]]
+    """Currencies of its size, each with the power in which the factor stands in it."""
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the relative changes that the factor makes."""
+        return tuple(
+            Size(quantity, float(values["factor"]) ** power - 1, "-") for quantity, power in self.powers
+        )
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the factor."""
@@ -43,6 +53,7 @@ class Modulus(FactorEffect):
     equivalent_to = ("density", "thickness", "length", "clamp_rotation")
     separated_by = "absolute level (calibrated FRFs), a known added mass, or a measured density"
     factors = ("E",)
+    powers = ((STIFFNESS_RATIO, 1), (STIFFNESS_OVER_MASS, 1))
     phrase = "the modulus of elasticity"
     low, high = 0.4, 2.5
     why = "wrong alloy or data sheet, not merely its scatter"
@@ -59,6 +70,7 @@ class Density(FactorEffect):
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass", "local_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
     factors = ("density",)
+    powers = ((MASS_RATIO, 1),)
     phrase = "the density"
     low, high = 0.4, 2.5
     why = "wrong alloy, coating or paint"
@@ -74,6 +86,7 @@ class Thickness(FactorEffect):
     equivalent_to = ("E", "density", "length")
     separated_by = "a caliper; absolute level; a known added mass"
     factors = ("thickness",)
+    powers = (("relative thickness", 1), (STIFFNESS_OVER_MASS, 2))
     phrase = "the thickness"
     low, high = 0.6, 1.6
     why = "next standard gauge"
@@ -90,6 +103,7 @@ class SectionScale(FactorEffect):
     equivalent_to = ("calibration_gain",)
     separated_by = "a caliper; a calibration of the measurement chain with a known mass"
     factors = ("section",)
+    powers = (("relative section", 1),)
     phrase = "the scale of the section"
     low, high = 0.4, 2.5
     why = "wrong width or number of layers"

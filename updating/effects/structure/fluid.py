@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Effect, Parameter, Values
+from updating.effects.base import EDGES, Effect, Parameter, Values, total_mass
+from updating.effects.mechanism import MASS_RATIO, Size
 from updating.effects.obstacles import Obstacle, damping_obstacle
-from updating.effects.structure.wetted import shorter_side, surroundings, unit_mass, unstated, wetted
+from updating.effects.structure.wetted import (
+    OPEN,
+    at_a_wall,
+    shorter_side,
+    surroundings,
+    unit_mass,
+    unstated,
+    wetted,
+)
 from updating.fluid import edge_reach, layer_depth, slip_matrix, unbounded
 from updating.fluid.tank import NEAREST
 from updating.models.absorbers import structural
@@ -34,13 +44,15 @@ FARTHEST = 3.0
 """Largest distance of surface and bottom, over the longer side [-]: of a tank that holds the structure; three sides are
 as good as none, 0.3 % of the added mass of a square plate. Doubled: deep water gains a seventh of the prior."""
 
-LEVEL_DOUBT = 0.02
-"""How far the level of the added mass beside a clamp is in doubt where no walls are stated, 1 sigma [-]: a clamp is
-neither an endless wall nor nothing. Of paper A's plate no wall takes 0.1 to 6.5 % off its twelve lowest modes, 2.7 % in
-the mean; all modes of a test have the same clamp, so no number of them makes up for it."""
-
 DEEP, NEAR = 0.8, 0.3
 """Prior quantiles of distances to start a search from: two and a third of a plate's shorter sides [-]."""
+
+
+WALL = Parameter(
+    "wall", "-", 0.0, 1.0, "a clamp is neither an endless wall nor nothing", default=1.0, natural=EDGES
+)
+"""Share of an endless wall in the clamp: the added mass lies between that with the wall and that without. Of paper A's
+plate no wall takes 0.1 to 6.5 % off its twelve lowest modes."""
 
 
 class FluidAddedMass(Effect):
@@ -69,19 +81,16 @@ class FluidAddedMass(Effect):
         low, high = (0.97 * stated, 1.03 * stated) if stated is not None else LIQUIDS
         why = "liquids from pentane over oils, alcohols and water to brines; gases cause no detectable shift"
         why = why if stated is None else "the study states it"
-        doubt = (
-            LEVEL_DOUBT
-            if stated is None and predictor.environment.walls is None and predictor.spec.clamped
-            else 0.0
-        )
-        density = Parameter("fluid_density", "kg/m^3", low, high, why, log=stated is None, scale_doubt=doubt)
-        return (density, *(_distance(predictor, name) for name in unstated(predictor.environment)))
+        density = Parameter("fluid_density", "kg/m^3", low, high, why, log=stated is None)
+        distances = (_distance(predictor, name) for name in unstated(predictor.environment))
+        return (density, *distances, *((WALL,) if at_a_wall(predictor) else ()))
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from deep water, and from a near surface or bottom where nothing is stated of these."""
         count = len(unstated(predictor.environment))
         near = [tuple(NEAR if k == which else DEEP for k in range(count)) for which in range(count)]
-        return tuple((0.5, *start) for start in ((DEEP,) * count, *near))
+        wall = (0.5,) * at_a_wall(predictor)
+        return tuple((0.5, *start, *wall) for start in ((DEEP,) * count, *near))
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the fluid's inertia."""
@@ -89,7 +98,7 @@ class FluidAddedMass(Effect):
         distances = {"free_surface": unbounded(around.free_surface), "bottom": unbounded(around.bottom)}
         density = values["fluid_density"]
         return State(
-            mass=(density * unit_mass(predictor, around),), fluid={"fluid_density": density, **distances}
+            mass=(density * _unit_mass(predictor, values),), fluid={"fluid_density": density, **distances}
         )
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
@@ -98,8 +107,14 @@ class FluidAddedMass(Effect):
         A denser fluid under a nearer surface adds as much; on a slender beam no mode separates the two.
         """
         first = predictor.once("first mode", lambda: _first_mode(predictor))
-        added = unit_mass(predictor, surroundings(predictor, values))[: len(first), : len(first)]
+        added = _unit_mass(predictor, values)[: len(first), : len(first)]
         return {"added_mass_ratio": (values["fluid_density"] * float(first @ added @ first), "-")}
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return what the fluid adds in the first mode, per area of the structure and over its own mass."""
+        ratio, unit = self.derived(predictor, values)["added_mass_ratio"]
+        own = total_mass(predictor.spec) / (predictor.spec.length * predictor.spec.width)
+        return Size("added mass per area", ratio * own, "kg/m^2"), Size(MASS_RATIO, ratio, unit)
 
 
 class FluidDamping(Effect):
@@ -139,6 +154,15 @@ class FluidDamping(Effect):
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the product of density and viscosity, which is what damping determines."""
         return {"density_viscosity": (fluid_density(predictor) * values["viscosity"], "kg^2/(m^4 s)")}
+
+
+def _unit_mass(predictor: Predictor, values: Values) -> FloatArray:
+    """Return the added mass of a fluid of unit density, at a clamp that is a wall in part, (r, r) [m^3 in w]."""
+    around, wall = surroundings(predictor, values), float(values.get("wall", 1.0))
+    whole = unit_mass(predictor, around)
+    if wall == 1.0 or not at_a_wall(predictor):
+        return whole
+    return wall * whole + (1.0 - wall) * unit_mass(predictor, replace(around, walls=OPEN))
 
 
 def _distance(predictor: Predictor, name: str) -> Parameter:

@@ -11,6 +11,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place
+from updating.effects.mechanism import Size
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
 from updating.effects.structure.spring import LOSSY, SLIPS, lowest, own_stiffness
@@ -160,6 +161,12 @@ class Joint(Effect):
             for name, own in _modelled(joint).items()
             if own and name in values and values[name] != own
         }
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return what the joint has of the modelled stiffness, or what is not modelled itself."""
+        shares = self.derived(predictor, values)
+        of_modelled = tuple(Size(name.replace("_", " "), *share) for name, share in shares.items())
+        return of_modelled[:1] or super().sizes(predictor, values)
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the joint."""

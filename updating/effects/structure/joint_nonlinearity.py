@@ -90,6 +90,7 @@ class JointNonlinearity(Effect):
     phrase = "a joint that is not linear"
     undone_by = frozenset({"unclamped"})
     fidelity = SPREAD
+    of_supports = True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the slope, and which joint."""

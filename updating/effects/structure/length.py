@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values
+from updating.effects.mechanism import INTEGRAL_COMPLIANCE, STIFFNESS_OVER_MASS, Size
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -14,6 +15,7 @@ class Length(Effect):
     name = "length"
     channel = "stiffness"
     summary = "The free length differs from the model's; at a clamp, the structure bends some way inside it."
+    keeps_clamps = True
     footprint = "All frequencies by nearly one factor; points move relative to the clamp, so shapes show it."
     equivalent_to = ("E", "density", "thickness", "clamp_rotation")
     separated_by = "shapes at points near the clamp, absolute level, or a free-free test of the same specimen"
@@ -21,6 +23,7 @@ class Length(Effect):
     competes_with = "length"
     undone_by = frozenset({"unclamped"})
     fidelity = 0.01
+    of_supports = True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the extension."""
@@ -40,6 +43,16 @@ class Length(Effect):
         if not stretch > 0:
             raise StudyError(f"length: extension = {values['extension']:g} m leaves nothing of the structure")
         return State(factors={"length": stretch})
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the extension, the compliance that shifts modes as far at a clamp, and the change of all of them."""
+        added = float(values["extension"])
+        slower = (1 + added / predictor.spec.length) ** -4 - 1
+        return (
+            Size("length", added, "m"),
+            Size(INTEGRAL_COMPLIANCE, added, "m"),
+            Size(STIFFNESS_OVER_MASS, slower, "-"),
+        )
 
     def scales(self, predictor: Predictor) -> tuple[str, float] | None:
         """Return that the extension stretches the model, at a clamp as elsewhere."""

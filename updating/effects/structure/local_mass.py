@@ -13,12 +13,13 @@ from updating.effects.box import (
     Place,
     extent_parameters,
     extents,
-    mirror_images,
     outline,
     place,
     spread,
     starting_places,
+    where_alike,
 )
+from updating.effects.mechanism import ADDED_MASS, Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import heavy_regions, region_centre, regions_meant
 from updating.models.state import State
@@ -64,6 +65,7 @@ class LocalMass(Effect):
     summary = (
         "One place is heavier (coating, ice, filling, cladding) or lighter than modelled, as stiff as before."
     )
+    keeps_clamps = True
     footprint = "Frequencies fall, or rise, in the modes that move there; those with a node there hardly do."
     phrase = "a place of another mass"
     models = ("beam", "plate", "matrices")
@@ -158,12 +160,16 @@ class LocalMass(Effect):
         along = np.asarray(imported.places.moves[imported.main_axis].sum(axis=0)).ravel() > 0
         return float((values["factor"] - 1) * sum(along @ (part @ along) for part in parts))
 
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the mass over what is modelled there."""
+        return (Size(ADDED_MASS, self.weight(predictor, values), "kg"),)
+
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle; where no shapes separate it from its mirror images, these too."""
         if predictor.spec.kind == "matrices":
             return (region_centre(predictor, values),)
         at = place(values)
-        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+        return where_alike(predictor, at)
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the mass added, which data determine better than the factor; negative of a lighter place."""

@@ -14,12 +14,13 @@ from updating.effects.box import (
     Place,
     extent_parameters,
     extents,
-    mirror_images,
     outline,
     place,
     shares,
     starting_places,
+    where_alike,
 )
+from updating.effects.mechanism import INTEGRAL_COMPLIANCE, Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import region_centre, regions_meant, stiff_regions
 from updating.models.softening import softening
@@ -62,6 +63,7 @@ class LocalStiffness(Effect):
     name = "local_stiffness"
     channel = "stiffness"
     summary = "One place is softer (crack, notch, loose joint) or stiffer (rib, weld, repair) than modelled."
+    keeps_clamps = True
     footprint = (
         "Frequencies fall, or rise, in the modes that bend there; those with no curvature there hardly move."
     )
@@ -161,7 +163,13 @@ class LocalStiffness(Effect):
         if predictor.spec.kind == "matrices":
             return (region_centre(predictor, values),)
         at = place(values)
-        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+        return where_alike(predictor, at)
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the compliance, of a region of matrices over its own."""
+        value, unit = self.derived(predictor, values)["compliance"]
+        name = INTEGRAL_COMPLIANCE if unit == "m" else f"relative {INTEGRAL_COMPLIANCE}"
+        return (Size(name, value, unit),)
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the compliance, the integral of EI0/EI - 1 along x, of plates its mean across: what data determine."""

@@ -13,7 +13,8 @@ from scipy.special import ndtr, ndtri
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
-from updating.effects.box import AXES, LIKE, Place, mirror_images, outline, starting_places
+from updating.effects.box import AXES, LIKE, Place, as_places, outline, starting_places, where_alike
+from updating.effects.mechanism import ADDED_MASS, Size
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
 from updating.effects.structure.attachment import attachment_of, with_body
@@ -24,8 +25,10 @@ from updating.effects.structure.nodes import (
     distinct_groups,
     free_nodes,
     group_centres,
+    without_places,
 )
 from updating.effects.structure.screening import TRIED, promising_nodes
+from updating.effects.structure.sensors import sensor_places, sensor_roves, sensor_share
 from updating.models.absorbers import structural
 from updating.models.base import Structure
 from updating.models.fields import Sparse
@@ -113,6 +116,7 @@ class SensorMass(Effect):
     name = "sensor_mass"
     channel = "mass"
     summary = "The mounted sensor (each of them) loads the structure and is not in the model."
+    keeps_clamps = True
     footprint = (
         "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
         " Its bulk is its rotary inertia over that of a steel cube of its mass."
@@ -166,6 +170,10 @@ class SensorMass(Effect):
         """Return the mass of one sensor [kg]."""
         return float(values["mass"])
 
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the mass of one sensor."""
+        return (Size(ADDED_MASS, self.sensor_weight(values), "kg"),)
+
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Require the places of the sensors."""
         if len(sensor_places(predictor)):
@@ -187,9 +195,7 @@ class SensorMass(Effect):
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the sensors."""
-        points = self._places(predictor, values)
-        padded = np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
-        return tuple((float(x), float(y), float(z)) for x, y, z in padded)
+        return as_places(self._places(predictor, values))
 
 
 class LumpedMass(Effect):
@@ -198,6 +204,7 @@ class LumpedMass(Effect):
     name = "lumped_mass"
     channel = "mass"
     summary = "A body is fixed to the structure at one place that the model does not hold."
+    keeps_clamps = True
     footprint = (
         "Frequencies fall in the modes that move there, not in those with a node there; shapes shrink there."
         " Its bulk is its rotary inertia over that of a steel cube of its mass."
@@ -222,13 +229,13 @@ class LumpedMass(Effect):
         """Return the mass of the body, which stays on when the specimen is weighed [kg]."""
         return float(values["mass"])
 
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the mass of the body."""
+        return (Size(ADDED_MASS, self.weight(predictor, values), "kg"),)
+
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need places: on imported matrices, the points of the test."""
-        imported = predictor.spec.imported
-        if imported is None or len(predictor.measured.points) or imported.groups:
-            return None
-        what = "imported matrices need points of the test, or node sets, at which a body might sit"
-        return Obstacle(Lack.DATA, what)
+        return without_places(predictor, "a body might sit")
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return a body at an end, at a test point and anywhere; of imported matrices at nodes.
@@ -290,7 +297,7 @@ class LumpedMass(Effect):
         if predictor.spec.imported is not None and "at" in values:
             return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
-        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+        return where_alike(predictor, at)
 
 
 def _on_matrices(predictor: Predictor, imported: Imported, values: Values, inertia: float) -> State:
@@ -369,22 +376,3 @@ def _bulk(default: float) -> Parameter:
 def _reduced_inertia(predictor: Predictor, points: FloatArray) -> FloatArray:
     reduced = predictor.reduced
     return reduced.project(unit_inertia(reduced.structure, points))
-
-
-def sensor_roves(predictor: Predictor) -> bool:
-    """Return whether one sensor was moved from point to point while the hammer stayed."""
-    test = predictor.measured
-    return len(test.sensors) > 3 and len(set(test.hit.tolist())) == 1
-
-
-def sensor_share(predictor: Predictor) -> float:
-    """Return in which share of the measurements each place of :func:`sensor_places` carries the mass [-]."""
-    return 1 / len(sensor_places(predictor)) if sensor_roves(predictor) else 1.0
-
-
-def sensor_places(predictor: Predictor) -> FloatArray:
-    """Return where sensors sit, (n, dim) [m]: as the data say, else where the modeller put masses."""
-    test, spec = predictor.measured, predictor.spec
-    if test.sensors:
-        return np.unique(test.points[list(test.sensors)], axis=0)
-    return np.array([mass.at[: spec.dim] for mass in spec.masses], dtype=float).reshape(-1, spec.dim)

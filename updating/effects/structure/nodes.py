@@ -6,8 +6,10 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.imported.groups import Group
 from updating.models.imported.matrices import Imported
+from updating.prediction.predict import Predictor
 
 NAMED_SHARE = 0.5
 """Prior share of the places that a user named, test points and node sets, the rest that of all other nodes [-]:
@@ -44,3 +46,11 @@ def free_nodes(imported: Imported, known: FloatArray) -> IntArray:
     unlike = moving[np.sort(first)]
     found: IntArray = unlike[distinct(imported, places.at[unlike], known)]
     return found
+
+
+def without_places(predictor: Predictor, what: str) -> Obstacle | None:
+    """Return the obstacle of imported matrices on which there is no place at which something is or acts."""
+    imported = predictor.spec.imported
+    if imported is None or len(predictor.measured.points) or imported.groups:
+        return None
+    return Obstacle(Lack.DATA, f"imported matrices need points of the test, or node sets, at which {what}")

@@ -7,23 +7,8 @@ from types import MappingProxyType
 
 from updating.effects.base import Effect, Parameter, Values
 from updating.models.state import State
-from updating.models.terms import FieldTerm
+from updating.models.terms import ACROSS, COUPLING, TWIST
 from updating.prediction.predict import Predictor
-
-SHARES = {("wyy", "wyy"): 1.0, ("wxx", "wyy"): 0.5, ("wxy", "wxy"): 0.5} | {
-    ("ryy", "ryy"): 1.0,
-    ("rxx", "ryy"): 0.5,
-    ("rt", "rt"): 0.5,
-    ("gx", "gx"): 0.5,
-    ("gy", "gy"): 0.5,
-}
-"""Power of D_y / D_x in each term of the energy of a thin plate (Huber 1923) and of a thick one (G as the twist)."""
-
-TWIST = frozenset({("wxy", "wxy"), ("rt", "rt")})
-"""Terms that grow with the modulus of shear in the plane; those across the plate's thickness are others."""
-
-COUPLING = frozenset({("wxx", "wyy"), ("rxx", "ryy")})
-"""Terms that grow with Poisson's ratio, the geometric mean of that along and that across."""
 
 HUBER = 1.0
 """Shear modulus and coupling where none is stated, over those of Huber [-]."""
@@ -88,18 +73,12 @@ class Orthotropy(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across and in twist scaled."""
-        reduced = predictor.reduced
-        sums = reduced.sums
-        change = 0.0 * sums[0]
-        for term, whole in zip(reduced.structure.terms, sums, strict=True):
-            assert isinstance(term, FieldTerm)
-            fields = term.left, term.right
-            if term.kind == "stiffness" and fields in SHARES:
-                grown = values["ratio"] ** SHARES[fields]
-                grown *= values.get("shear_ratio", HUBER) if fields in TWIST else 1.0
-                grown *= values.get("coupling", HUBER) if fields in COUPLING else 1.0
-                change = change + (grown - 1) * term.scale(predictor.base.factors) * whole
-        return State(stiffness=(change,))
+        factors = {
+            ACROSS: values["ratio"],
+            TWIST: values.get("shear_ratio", HUBER),
+            COUPLING: values.get("coupling", HUBER),
+        }
+        return State(factors=factors)
 
     @staticmethod
     def _most(predictor: Predictor) -> float:

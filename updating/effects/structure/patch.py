@@ -16,6 +16,7 @@ from updating.effects.box import (
     shares,
     starting_places,
 )
+from updating.effects.mechanism import Size
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import region_centre, regions_meant, stiff_regions
 from updating.models.state import Loss, State
@@ -162,6 +163,13 @@ class DampingPatch(Effect):
             return (region_centre(predictor, values),)
         at, stated = place(values), predictor.measured.has_shapes and (values["mass"] or values["stiffness"])
         return (at,) if stated else mirror_images(predictor.spec, at)
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the loss factor times the length covered, or the coefficient by which it loses."""
+        if "cover" in (cover := self.derived(predictor, values)):
+            return (Size("loss factor times length", *cover["cover"]),)
+        laws = (p for p in self.parameters(predictor) if values.get(p.name) and p.name in LAWS)
+        return tuple(Size(p.name.replace("_", " "), float(values[p.name]), p.unit) for p in laws)[:1]
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return loss factor times length covered, which data determine better than either."""

@@ -10,8 +10,9 @@ from scipy.spatial import KDTree
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
-from updating.effects.box import AXES, Place, mirror_images, outline, place, spread, starting_places
-from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
+from updating.effects.box import AXES, Place, outline, place, spread, starting_places, where_alike
+from updating.effects.mechanism import Channel, Size
+from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.attachment import Attachment, attachment_of, with_spring
 from updating.effects.structure.nodes import (
@@ -20,6 +21,7 @@ from updating.effects.structure.nodes import (
     distinct_groups,
     free_nodes,
     group_centres,
+    without_places,
 )
 from updating.effects.structure.screening import TRIED, promising_nodes
 from updating.models.fields import Sparse
@@ -64,6 +66,7 @@ class GroundSpring(Effect):
     summary = (
         "Something holds the structure beside its clamps: a stop, a cable, a stinger, an elastic foundation."
     )
+    keeps_clamps = True
     footprint = (
         "Frequencies rise, the lowest most, in the modes that move at the place; damping rises there, too."
     )
@@ -99,11 +102,7 @@ class GroundSpring(Effect):
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need places: on imported matrices, the points of the test."""
-        imported = predictor.spec.imported
-        if imported is None or len(predictor.measured.points) or imported.groups:
-            return None
-        what = "imported matrices need points of the test, or node sets, at which a spring might act"
-        return Obstacle(Lack.DATA, what)
+        return without_places(predictor, "a spring might act")
 
     def damps(self, parameter: str = "") -> bool:
         """State that the dashpots do, and nothing else."""
@@ -180,13 +179,23 @@ class GroundSpring(Effect):
             losses=(Loss(damping * unit),) if damping else (),
         )
 
+    def acts_in(self, predictor: Predictor, values: Values) -> Channel:
+        """Return damping where there are dashpots alone."""
+        return self.channel if values.get("stiffness") else "damping"
+
+    def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
+        """Return the stiffness of all springs together, of dashpots alone theirs."""
+        if values.get("stiffness"):
+            return (Size("stiffness to the ground", float(values["stiffness"]), "N/m"),)
+        return (Size("damping to the ground", float(values.get("damping", 0.0)), "N s/m"),)
+
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle; where no shapes separate it from its mirror images, these too."""
         if "at" in values:
             assert predictor.spec.imported is not None
             return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (*place(values)[:2], float(values.get("z", 0.0)))
-        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+        return where_alike(predictor, at)
 
 
 def _at_points(predictor: Predictor) -> list[dict[str, Any]]:

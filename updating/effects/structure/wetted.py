@@ -27,6 +27,9 @@ COUPLES = "a fluid's pressure, which couples every point to every other"
 DISTANCES = ("free_surface", "bottom")
 """What of the surroundings is a parameter where a study does not state it."""
 
+OPEN = (-math.inf, math.inf, -math.inf, math.inf)
+"""Walls of a fluid that has none [m]."""
+
 
 def unstated(around: Environment) -> tuple[str, ...]:
     """Return which distances a study does not state."""
@@ -57,19 +60,26 @@ def unit_mass(predictor: Predictor, around: Environment | None = None) -> FloatA
     predictor : Predictor
         The structure.
     around : Environment, optional
-        Surface and bottom elsewhere than where the study has them, or where it has none.
+        Surface and bottom elsewhere than where the study has them, or where it has none; other walls.
     """
     stated = predictor.environment
-    if around is None or all(getattr(around, name) == getattr(stated, name) for name in DISTANCES):
-        return predictor.once("fluid", lambda: mass_within(predictor, stated))
-    table, distances = _table(predictor), (unbounded(around.free_surface), unbounded(around.bottom))
+    around = stated if around is None else around
+    if all(getattr(around, name) == getattr(stated, name) for name in DISTANCES):
+        return predictor.once(("fluid", around.walls), lambda: mass_within(predictor, around))
+    table = _table(predictor, replace(stated, walls=around.walls))
+    distances = unbounded(around.free_surface), unbounded(around.bottom)
     return table.matrix(*distances) if table.knows(*distances) else mass_within(predictor, around)
 
 
-def _table(predictor: Predictor) -> TankTable:
-    """Return the added mass for all distances that the study does not state, kept with the structure."""
+def at_a_wall(predictor: Predictor) -> bool:
+    """Return whether the structure is taken to stand at a wall because it is clamped along one edge alone."""
+    return predictor.environment.walls is None and len(predictor.spec.clamped) == 1
+
+
+def _table(predictor: Predictor, stated: Environment) -> TankTable:
+    """Return the added mass for all distances that the surroundings do not state, kept with the structure."""
     predictor.reduced.refuse_whole(COUPLES)
-    stated, kept = predictor.environment, predictor.reduced.kept
+    kept = predictor.reduced.kept
     stretch = predictor.base.factors.get("length", 1.0)
     key = ("tank", stated.free_surface, stated.bottom, stated.walls, stretch)
     if key not in kept:

@@ -11,7 +11,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
-from updating.models.base import Structure, scale_of
+from updating.models.base import Structure, relative_scales, scale_of
 from updating.models.fields import Sparse
 from updating.models.imported.answers import part_answers
 from updating.models.imported.matrices import Imported
@@ -122,9 +122,7 @@ class ImportedStructure(Structure):
         total = {"stiffness": self.imported.stiffness, "mass": self.imported.mass}
         for term in self.terms:
             parts = self.parts(term.kind)
-            scale = np.ones(len(parts))
-            for (region, factor), value in state.regional.items():
-                scale[region] *= value ** term.powers.get(factor, 0.0)
+            scale = relative_scales(term, state, len(parts) - 1)
             for region in np.flatnonzero(scale != 1.0).tolist():
                 total[term.kind] = Sparse(total[term.kind] + (scale[region] - 1.0) * parts[region])
             total[term.kind] = Sparse(total[term.kind] * term.scale(state.factors))

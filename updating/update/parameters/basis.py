@@ -9,7 +9,8 @@ from scipy.sparse import linalg as sparse_linalg
 
 from acquisition.arrays import FloatArray
 from updating.models.fields import Sparse
-from updating.models.reduced import SMALL, Reduced
+from updating.models.reduced import Reduced
+from updating.models.reduction import SMALL
 from updating.models.state import NOMINAL, State
 from updating.models.structure import FieldStructure
 from updating.update.parameters.affine import NONE, Group, groups

@@ -57,8 +57,8 @@ class Held:
         away = abs(self.coordinate - system.centre[self.index])
         wider = f"a tolerance of `{parameter.name} = {away / WITHIN:.1g}`" if parameter.log else "a wider one"
         return (
-            f"{name} is held by its tolerance of {_tolerance(parameter)}, not by the data, which take it to "
-            f"{_value(parameter, self.coordinate)} and there lower chi-square by {number(self.gain)}; if it may be so "
+            f"{name} is held by its tolerance of {_tolerance(parameter)}; the data alone would give "
+            f"{_value(parameter, self.coordinate)}, which lowers chi-square by {number(self.gain)}. If it may be so "
             f"far off, state `bounds.{parameter.name}` about that value or {wider} in [tolerances]"
         )
 

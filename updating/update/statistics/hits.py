@@ -13,6 +13,7 @@ from acquisition.errors import EstimationError
 from identification import ModalModel
 from identification.fit.equations.refine import refine
 from identification.levels.slopes import weights_of
+from updating.steps import SILENT, Steps
 
 STEPS = 12
 """Steps of each refit, which begins where the identification ended."""
@@ -22,7 +23,13 @@ AT_REST = 1e-4
 
 
 def redrawn_frequencies(
-    model: ModalModel, test: HammerTest, *, rng: np.random.Generator, n: int = 200, **options: Any
+    model: ModalModel,
+    test: HammerTest,
+    *,
+    rng: np.random.Generator,
+    n: int = 200,
+    steps: Steps = SILENT,
+    **options: Any,
 ) -> FloatArray:
     """Draw the hits of a test anew, and refit the poles that were identified.
 
@@ -38,6 +45,8 @@ def redrawn_frequencies(
         Source of the draws.
     n : int
         Number of draws [-].
+    steps : Steps
+        Where it is announced how many are drawn.
     **options
         ``estimator``, ``verdicts`` and ``windows`` of :func:`acquisition.bootstrap_frfs`, as when the FRFs were
         estimated.
@@ -58,6 +67,7 @@ def redrawn_frequencies(
     rows: IntArray | None = None
     place = np.argsort(np.argsort(np.abs(poles)))[: len(model)]  # a fit sorts its poles
     for i, drawn in enumerate(bootstrap_frfs(test, rng=rng, n=n, **options)):
+        steps.done(i / n)
         rows = _rows(model.frfs, drawn) if rows is None else rows
         data = (
             drawn.select(rows).double().band(float(model.frfs.frequency[0]), float(model.frfs.frequency[-1]))

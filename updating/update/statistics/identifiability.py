@@ -66,7 +66,7 @@ class Coupling:
             f"{text} (to {uncertainty(sigma)})"
             for text, sigma in zip(self.determined, self.sigma, strict=True)
         )
-        return f"{names}: not each by itself, only {known}"
+        return f"{names}: the data determine only {known}, not each of them"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,11 @@
 // Diagnosis: progress by stages, the answer as in the report, a cause accepted, what to measure next, planning.
 
-import { button, fill, fixed, h, table, warnings, withoutModel } from "../dom.js";
+import { button, fill, fixed, h, table, withoutModel } from "../dom.js";
+import { warned } from "../asked.js";
 import { charted, drawer, placed } from "../drawings.js";
 import { worker } from "./work.js";
+
+const ELSE = "something_else"; // the effect of a row that stands for a cause in no library
 
 export function open(root, app) {
   const answer = h("div"),
@@ -14,7 +17,9 @@ export function open(root, app) {
     frfs = h("div"),
     closes = h("p"),
     rest = h("div"),
-    planned = h("div");
+    planned = h("div"),
+    compared = h("div", { id: "so-far" }),
+    inside = h("div");
   const panel = (title, ...inside) => h("section", { class: "panel" }, h("h2", {}, title), ...inside);
   const where = panel("Where it sits", place),
     overlaid = panel("FRFs before and after", frfs);
@@ -32,7 +37,12 @@ export function open(root, app) {
   const drawings = drawer("diagnose");
   let standing = null;
   let seen = null;
-  const work = worker(app, "diagnose", { start: "Diagnose", again: "Diagnose again", done: shown });
+  let listed = "[]";
+  const work = worker(app, "diagnose", {
+    start: () => (app.state.accepted.length ? "Diagnose the rest" : "Diagnose"),
+    again: "Diagnose again",
+    done: shown,
+  });
   const plan = worker(app, "plan", { start: "Plan the next test", again: "Plan again", done: forecast });
   root.append(
     h(
@@ -44,7 +54,9 @@ export function open(root, app) {
         { class: "muted" },
         "Which effect missing in the model causes the gap, where it lies, and how far the gap closes once it is included.",
       ),
+      inside,
       work.element,
+      compared,
     ),
     result,
     h(
@@ -66,8 +78,46 @@ export function open(root, app) {
     await plan.update();
   }
 
-  async function shown(found) {
+  /** Show the single causes that are compared already. */
+  function provisional(singles) {
+    const mark = JSON.stringify(singles);
+    if (mark === listed) return; // the table stays as it was sorted
+    listed = mark;
+    const rows = [...singles].sort((a, b) => b.power - a.power);
+    fill(
+      compared,
+      rows.length
+        ? [
+            table(
+              `${rows.length - 1} single causes compared so far`,
+              [{ name: "cause" }, { name: "log₁₀ evidence", number: true }, { name: "fit p", number: true }],
+              rows.map((one) => [
+                one.name.replaceAll("_", " ") || "no cause",
+                one.power === null ? "–" : fixed(one.power, 1),
+                one.p,
+              ]),
+            ),
+            h("p", { class: "muted" }, "Evidence over that of no cause, in powers of ten. Provisional: the most probable are integrated more closely, and sets of causes follow where none alone explains the data."),
+          ]
+        : null,
+    );
+  }
+
+  async function shown(found, running, asks, singles) {
     result.hidden = !found;
+    provisional(singles);
+    const { accepted } = app.state;
+    fill(
+      inside,
+      accepted.length && !running
+        ? h(
+            "p",
+            { class: "done", id: "accepted" },
+            `Accepted: ${accepted.join("; ")}. `,
+            found ? "The answer below is what is left." : "It is part of the study now; diagnose the rest.",
+          )
+        : null,
+    );
     if (!found) return;
     const d = found.document;
     fill(
@@ -85,8 +135,9 @@ export function open(root, app) {
         " opens in a page of its own.",
       ),
     );
-    const ranking = d.cause.ranking.slice(0, 10);
-    const accepted = d.cause.verdict === "named" || d.cause.verdict === "class";
+    const rows = [...found.rows.entries()]; // a cause in no library has no row of its own there
+    const ranking = d.cause.ranking.map((row) => (row.effects[0] === ELSE ? [row] : [row, ...rows.shift()])).slice(0, 10);
+    const answered = d.cause.verdict === "named" || d.cause.verdict === "class";
     const columns = ["causes", "probability", "parameters", "fit p", "model"].map((name, i) => ({
       name,
       number: i === 1 || i === 3,
@@ -97,12 +148,12 @@ export function open(root, app) {
       table(
         "Explanations, most probable first",
         columns,
-        ranking.map((row, i) => [
-          row.effects.join(" + ") || "tolerances alone",
-          found.rows[i].probability,
-          found.rows[i].parameters,
-          found.rows[i].p,
-          found.rows[i].acceptable
+        ranking.map(([row, i, own]) => [
+          row.effects.join(" + ").replaceAll("_", " ") || "tolerances alone",
+          own?.probability ?? `${fixed(100 * row.probability, 1)} %`,
+          own?.parameters ?? "",
+          own?.p ?? "",
+          own?.entries
             ? button("Accept", () => app.change("accept", { row: i }), {
                 class: "small",
                 "aria-label": `put ${row.effects.join(" and ")} into the model`,
@@ -111,14 +162,14 @@ export function open(root, app) {
             : "",
         ]),
       ),
-      ranking.some((row, i) => row.effects.length && !found.rows[i].acceptable)
-        ? h("p", { class: "muted" }, "Hypotheses cannot be put into the model; change its deck or matrices.")
-        : null,
+      [...new Set(ranking.map(([, , own]) => own?.why_not).filter(Boolean))].map((why) =>
+        h("p", { class: "muted" }, `Not to be accepted: ${why}.`),
+      ),
       h(
         "p",
         { class: "muted" },
-        accepted
-          ? "Accept puts a row into the model; diagnose again to see what is left."
+        answered
+          ? "Accept puts a row into the model, with the values found; the rest can then be diagnosed."
           : "No row is the answer; accept one only if you know better.",
       ),
     );
@@ -147,7 +198,7 @@ export function open(root, app) {
             ),
           )
         : null,
-      warnings(d.warnings),
+      warned(app, d.warnings, asks, () => work.start()),
     );
     await drawn(found);
   }

@@ -1,8 +1,12 @@
 // Hits: every verdict with its reason, the records of one, and the FRF that follows from what is used.
 
 import { get } from "../api.js";
+import { warned } from "../asked.js";
 import { axis, colour, draw, drawFrf, escaped, line } from "../charts.js";
-import { button, fill, h, select, warnings } from "../dom.js";
+import { button, check, fill, h, select } from "../dom.js";
+
+const SHADES = ["orange", "green", "red", "muted"]; // of FRFs over one another; their names are at the cursor
+const THIN = { line: { width: 1 }, opacity: 0.75 };
 
 export function open(root, app) {
   const list = h("div", { class: "hits-list" });
@@ -28,12 +32,12 @@ export function open(root, app) {
   );
   const side = h("section", { class: "panel side" }, h("h2", {}, "Hits"), list);
   root.append(notes, h("div", { class: "columns" }, side, h("div", {}, records, picture)));
-  const view = { hit: null, frf: null, page: null, before: null };
+  const view = { overlaid: false, hit: null, frf: null, page: null, before: null };
 
   async function update() {
     view.page = await get("hits");
     const { hits, frfs } = view.page;
-    fill(notes, warnings(view.page.warnings));
+    fill(notes, warned(app, view.page.warnings, view.page.asks));
     records.hidden = !hits.length;
     heading.textContent = hits.length ? "FRF of the hits used" : "FRFs";
     if (!hits.length) {
@@ -220,11 +224,23 @@ export function open(root, app) {
           { disabled: !view.page.hits.length, id: "estimator" },
         ),
       ),
+      check(
+        "with the other FRFs of the same force or response",
+        view.overlaid,
+        (on) => {
+          view.overlaid = on;
+          app.quiet(frf());
+        },
+        { id: "overlay" },
+      ),
     );
   }
 
   async function frf() {
-    const found = await get("frf", { index: view.frf });
+    const [found, others] = await Promise.all([
+      get("frf", { index: view.frf }),
+      view.overlaid ? get("others", { index: view.frf }) : { curves: [] },
+    ]);
     view.curve = { ...found, index: view.frf };
     const old =
       view.before && view.before.name === found.name && String(view.before.magnitude) !== String(found.magnitude)
@@ -237,11 +253,14 @@ export function open(root, app) {
         found[key] ? line(name, found.x, found[key], shade) : null,
       ].filter(Boolean);
     await drawFrf(charts.frf, {
-      magnitude: both(found.hits ? `of ${found.hits} hits` : "FRF", "magnitude", "blue"),
+      magnitude: [
+        ...both(found.hits ? `of ${found.hits} hits` : "FRF", "magnitude", "blue").reverse(),
+        ...others.curves.map((one, i) => line(one.name, others.x, one.magnitude, SHADES[i % 4], THIN)),
+      ],
       phase: both("phase", "phase", "blue"),
       coherence: both("coherence", "coherence", "orange"),
       unit: found.unit,
-      showlegend: Boolean(old),
+      showlegend: Boolean(old) || others.curves.length > 0,
       shapes: found.band20 ? [{ type: "line", x0: found.band20, x1: found.band20, line: dotted }] : [],
       annotations: found.band20
         ? [

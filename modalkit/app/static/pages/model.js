@@ -2,7 +2,9 @@
 
 import { get, post } from "../api.js";
 import { draw, drawFrf, line, macMatrix, modesAxis } from "../charts.js";
-import { button, field, fill, fixed, h, select, short, table, warnings } from "../dom.js";
+import { warned } from "../asked.js";
+import { button, field, fill, fixed, h, select, short, table } from "../dom.js";
+import { form } from "./form.js";
 
 export function open(root, app) {
   const notes = h("div"),
@@ -13,6 +15,7 @@ export function open(root, app) {
     frf = h("div"),
     mac = h("div"),
     chooser = h("div", { class: "row" });
+  const made = h("div");
   const text = h("textarea", { rows: "18", spellcheck: false, "aria-label": "the study as text", id: "study-text" });
   const comparing = h("section", { class: "panel" }, h("h2", {}, "Test beside model"), pairs);
   const moving = h("section", { class: "panel" }, h("h2", {}, "What if"), sliders);
@@ -38,6 +41,7 @@ export function open(root, app) {
   );
   root.append(
     notes,
+    made,
     h("div", { class: "two stacked" }, h("div", {}, moving, drawn), h("div", {}, comparing, matrix)),
     stated,
   );
@@ -49,9 +53,12 @@ export function open(root, app) {
     for (const one of [comparing, moving, drawn, matrix]) one.hidden = !page.correlation;
     fill(
       notes,
-      page.correlation ? warnings(page.correlation.warnings) : h("p", {}, `No model beside the test: ${page.why}.`),
-      app.state.has_model ? null : howToWrite(),
+      page.correlation
+        ? warned(app, page.correlation.warnings, page.asks)
+        : h("p", { class: app.state.has_model ? "error" : "muted" }, `No model beside the test: ${page.why}.`),
     );
+    if (!page.form) fill(made);
+    else if (!made.firstChild) fill(made, form(app, page.form, page.test)); // what was typed stays over other changes
     text.value = page.text;
     fielded();
     if (!page.correlation) return;
@@ -404,16 +411,4 @@ export function open(root, app) {
 
   const rms = (those) => Math.sqrt(those.reduce((sum, p) => sum + p.error_percent ** 2, 0) / those.length);
   return { update };
-}
-
-/** Return what to write into a study that has no model: an example, and where the keys are described. */
-function howToWrite() {
-  const example = '[model]\ntype = "calculix"      # or beam, plate, matrices\ndeck = "part.inp"\nunits = "mm-t-s"';
-  return h(
-    "section",
-    { class: "panel", id: "no-model" },
-    h("p", {}, 'To compare one, add it under "Study as text" below, then click "Apply"; for instance:'),
-    h("pre", {}, example),
-    h("p", {}, "All keys: docs/reference/study.md; decks and matrices step by step: docs/tutorials/own_model.md."),
-  );
 }

@@ -1,9 +1,18 @@
 // Modes: the stabilisation chart with a reason for every pole, the table, the fit over an FRF, the auto-MAC.
 
 import { get } from "../api.js";
-import { draw, drawFrf, line, macMatrix, modesAxis, onclick } from "../charts.js";
-import { button, field, fill, fixed, h, select, sigma, table, warnings } from "../dom.js";
+import { warned } from "../asked.js";
+import { axis, draw, drawFrf, line, logAxis, macMatrix, modesAxis, onclick } from "../charts.js";
+import { button, check, field, fill, fixed, h, select, sigma, table } from "../dom.js";
 import { stabilisation } from "./stabilisation.js";
+
+const FEW = 600; // poles up to which letters stand beside them before anybody asks: each letter takes time to draw
+
+// what the curves behind the poles show
+const BEHIND = {
+  CMIF: "CMIF: a peak of the first is a mode, one of the second at the same line another one beside it.",
+  MvMIF: "MvMIF, from 0 to 1: a minimum of the first is a mode, one of the second at the same line another one beside it.",
+};
 
 export function open(root, app) {
   const chart = h("div"),
@@ -13,8 +22,10 @@ export function open(root, app) {
     controls = h("div", { class: "controls" }),
     chooser = h("div", { class: "row" }),
     notes = h("div");
+  const letters = h("p", { class: "muted small" });
+  const behind = h("p", { class: "muted small", id: "behind-meaning" });
   const readout = h("p", { class: "muted", "aria-live": "polite", id: "readout" });
-  const picking = h("section", { class: "panel" }, h("h2", {}, "Stabilisation chart"), controls, chart, readout);
+  const picking = h("section", { class: "panel" }, h("h2", {}, "Stabilisation chart"), controls, chart, behind, letters, readout);
   const fitted = h("section", { class: "panel" }, h("h2", {}, "Fit"), chooser, fit);
   const matrix = h("section", { class: "panel" }, h("h2", {}, "Auto-MAC"), mac);
   root.append(
@@ -24,17 +35,46 @@ export function open(root, app) {
     h("div", { class: "two wide-left" }, fitted, matrix),
   );
   // typed: limits of the band that are not set yet, which other changes leave in their fields
-  const view = { page: null, frf: null, over: "sum", curve: null, typed: {} };
+  const view = { page: null, frf: null, over: "sum", lettered: null, curve: null, indicators: null, typed: {} };
 
   async function update() {
     readout.textContent = ""; // what it stated was of the state before
-    view.page = await get("modes");
+    if (!view.page) await measured();
+    try {
+      view.page = await get("modes");
+    } finally {
+      readout.textContent = "";
+    }
     const page = view.page;
+    view.lettered ??= window.innerWidth >= 600 && (page.chart?.order.length ?? 0) <= FEW;
     picking.hidden = fitted.hidden = !page.identified;
-    fill(notes, warnings(page.warnings));
+    fill(notes, warned(app, page.warnings, page.asks));
     listed(page.table);
     if (page.identified) controlled();
-    await Promise.all([page.identified ? charted(page.table) : null, page.identified ? overlaid() : null, macs()]);
+    view.indicators = null; // those of the state before
+    await Promise.all([page.identified ? indicated().then(() => charted(page.table)) : null, page.identified ? overlaid() : null, macs()]);
+  }
+
+  /** Draw the FRFs as long as nothing is identified yet. */
+  async function measured() {
+    const found = await get("measured");
+    if (!found) return;
+    readout.textContent = "The FRFs as measured; poles and modes follow.";
+    matrix.hidden = true;
+    fill(chooser, h("p", { class: "muted" }, `${found.frf.name}, measured`));
+    const { sum, band, frf } = found;
+    await Promise.all([
+      draw(chart, [line("Σ|H|", sum.x, sum.sum, "muted")], {
+        height: window.innerWidth < 600 ? 380 : 460,
+        xaxis: axis("frequency [Hz]", { range: band }),
+        yaxis: logAxis(`Σ|H| [${found.unit}]`, sum.sum),
+      }),
+      drawFrf(fit, {
+        magnitude: [line("measured", frf.x, frf.magnitude, "muted", { line: { width: 2.4 } })],
+        phase: [line("measured", frf.x, frf.phase, "muted", { line: { width: 2.4 } })],
+        unit: frf.unit,
+      }),
+    ]);
   }
 
   function controlled() {
@@ -102,14 +142,25 @@ export function open(root, app) {
           select(
             [
               ["sum", "sum of |H|"],
-              ["cmif", "CMIF"],
+              ["CMIF", "CMIF"],
+              ["MvMIF", "MvMIF"],
             ],
             view.over,
             (v) => {
               view.over = v;
-              app.quiet(charted(page.table));
+              app.quiet(indicated().then(() => charted(page.table)));
             },
+            { id: "behind" },
           ),
+        ),
+        check(
+          "letters of stability",
+          view.lettered,
+          (on) => {
+            view.lettered = on;
+            app.quiet(charted(page.table));
+          },
+          { id: "letters" },
         ),
       ),
       h(
@@ -137,18 +188,7 @@ export function open(root, app) {
             h(
               "div",
               { class: "row" },
-              page.references.map((r) =>
-                h(
-                  "label",
-                  { class: "check" },
-                  h("input", {
-                    type: "checkbox",
-                    checked: r.used,
-                    change: (e) => referenced(r.name, e.target.checked),
-                  }),
-                  r.name,
-                ),
-              ),
+              page.references.map((r) => check(r.name, r.used, (on) => referenced(r.name, on))),
             ),
           )
         : null,
@@ -199,9 +239,20 @@ export function open(root, app) {
       : `No mode is kept at ${hertz.toPrecision(6)} Hz.`;
   }
 
+  /** Ask for the mode indicator functions, where they are to be seen. */
+  async function indicated() {
+    if (view.over !== "sum") view.indicators ??= await get("indicators");
+  }
+
   async function charted(modes) {
-    const { traces, layout } = stabilisation(view.page, view.over, modes);
+    const page = { ...view.page, lettered: view.lettered, indicators: view.indicators };
+    const { traces, layout } = stabilisation(page, view.over, modes);
     await draw(chart, traces, layout);
+    const lacking = view.over !== "sum" && view.indicators?.why;
+    behind.textContent = lacking ? `No ${view.over}: ${lacking}.` : (BEHIND[view.over] ?? "");
+    letters.textContent = view.lettered
+      ? `${Object.entries(view.page.chart.letters).map((one) => one.join(" ")).join(", ")}; within 1 % in frequency, 5 % in damping, 0.98 in MAC of the order below.`
+      : "";
     await onclick(chart, (point) => {
       const mode = point.customdata;
       if (mode !== null && mode !== undefined && Number.isFinite(mode)) {
@@ -213,11 +264,8 @@ export function open(root, app) {
   }
 
   function chosenRow(mode) {
-    const row = rows.querySelectorAll("tbody tr")[mode];
     rows.querySelectorAll("tr.chosen").forEach((one) => one.classList.remove("chosen"));
-    row?.classList.add("chosen");
-    row?.scrollIntoView({ block: "nearest" });
-    row?.querySelector("button")?.focus({ preventScroll: true });
+    rows.querySelector(`tbody tr[data-row="${mode}"]`)?.classList.add("chosen"); // the page stays where it is
     const m = view.page.table[mode];
     if (m) readout.textContent = `Mode ${m.mode}: ${fixed(m.frequency_hz, 4)} Hz, ${m.whence}.`;
   }

@@ -2,12 +2,15 @@
 
 import { get } from "../api.js";
 import { fill, h } from "../dom.js";
+import { joining } from "../joining.js";
 import { viewer } from "../viewer.js";
 
-export function open(root) {
+export function open(root, app) {
   const nothing = h("div"),
     drawn = h("section", { class: "panel" }, h("h2", {}, "Shapes"));
   const view = viewer(drawn);
+  const lines = joining(app, view);
+  drawn.append(lines.element);
   const listed = h("section", { class: "panel" }, view.list);
   root.append(nothing, drawn, listed);
   let closed = false;
@@ -18,6 +21,7 @@ export function open(root) {
     drawn.hidden = listed.hidden = !page.modes.length;
     fill(nothing, page.modes.length ? null : h("p", {}, page.why));
     view.show(page);
+    lines.show(page);
   }
 
   return {

@@ -15,14 +15,14 @@ const KINDS = [
 // where a mode comes from, above the chart
 const SYMBOLS = { chain: "triangle-down", refinement: "diamond", named: "star" };
 
-/** Return traces and layout of the chart of a page of modes; behind it stands the sum of the FRFs, or the CMIF. */
+/** Return traces and layout of the chart of a page of modes; behind it stands the sum of the FRFs, or an indicator. */
 export function stabilisation(page, over, modes) {
-  const { chart: found, sum, band } = page;
-  const behind = Object.keys(sum).filter((k) =>
-    over === "cmif" && "cmif1" in sum ? k.startsWith("cmif") : k === "sum",
-  );
-  const traces = behind.map((k, i) =>
-    line(k === "sum" ? "Σ|H|" : k.toUpperCase(), sum.x, sum[k], i ? "faint" : "muted", {
+  const { chart: found, sum, band, indicators } = page;
+  const named = Object.keys(indicators ?? {}).filter((k) => k.startsWith(`${over} `));
+  const behind = named.length ? named.map((k) => [k, indicators.x, indicators[k]]) : [["Σ|H|", sum.x, sum.sum]];
+  const bounded = over === "MvMIF" && named.length > 0; // from 0 to 1, whatever the FRFs are
+  const traces = behind.map(([name, x, y], i) =>
+    line(name, x, y, i ? "faint" : "muted", {
       yaxis: "y2",
       hoverinfo: "x",
       opacity: i ? 0.7 : 0.9,
@@ -33,21 +33,25 @@ export function stabilisation(page, over, modes) {
     if (!keep.length) continue;
     traces.push({
       type: "scatter",
-      mode: "markers",
+      mode: page.lettered ? "markers+text" : "markers",
+      text: keep.map((i) => found.letter[i]),
+      textposition: "middle right",
+      textfont: { size: 9, color: colour("muted") },
       name,
       x: keep.map((i) => found.frequency[i]),
       y: keep.map((i) => found.order[i]),
       marker: { symbol, size, color: colour(shade), line: { color: colour(shade), width: 1 } },
-      text: keep.map(
+      hovertext: keep.map(
         (i) =>
           escaped(
             `${found.frequency[i].toFixed(3)} Hz, damping ${(100 * found.damping[i]).toFixed(3)} %, order ${found.order[i]}`,
           ) +
+          `<br>${found.letter[i]}: ${found.letters[found.letter[i]]}` +
           "<br>" +
           escaped(wrapped(found.reasons[found.reason[i]].text)).replaceAll("\n", "<br>"),
       ),
       customdata: keep.map((i) => found.reasons[found.reason[i]].mode),
-      hovertemplate: "%{text}<extra></extra>",
+      hovertemplate: "%{hovertext}<extra></extra>",
     });
   }
   const top = Math.max(...found.orders) * 1.07;
@@ -86,7 +90,7 @@ export function stabilisation(page, over, modes) {
     yaxis2: {
       overlaying: "y",
       side: "right",
-      type: "log",
+      ...(bounded ? { type: "linear", range: [0, 1.04] } : { type: "log", autorange: true }),
       showgrid: false,
       showticklabels: false,
       title: { text: "" },

@@ -1,7 +1,8 @@
 // Update: which parameters, by which data; progress, and the answer.
 
 import { get } from "../api.js";
-import { field, fill, fixed, h, raised, select, table, warnings, withoutModel } from "../dom.js";
+import { field, fill, fixed, h, raised, select, table, withoutModel } from "../dom.js";
+import { answering, warned } from "../asked.js";
 import { charted, drawer } from "../drawings.js";
 import { worker } from "./work.js";
 
@@ -60,13 +61,15 @@ export function open(root, app) {
     return found.length ? found : null;
   };
 
-  async function shown(found) {
+  async function shown(found, running, asks) {
     result.hidden = !found;
     if (!found) return;
     const d = found.document;
     fill(
       answer,
       h("p", { class: "big", id: "update-answer" }, found.answer),
+      d.warnings.length ? h("div", { class: "first-warning" }, d.warnings[0], answering(app, asks[d.warnings[0]], () => work.start())) : null,
+      warned(app, d.warnings.slice(1), asks, () => work.start()),
       h(
         "p",
         {},
@@ -78,17 +81,19 @@ export function open(root, app) {
       tables,
       table(
         "Parameters",
-        ["parameter", "value", "unit", "σ", "factor", "at bound"].map((name, i) => ({
+        ["parameter", "before", "after", "σ", "unit", "factor", "bounds", "at bound"].map((name, i) => ({
           name,
-          number: [1, 3, 4].includes(i),
+          number: [1, 2, 3, 5].includes(i),
         })),
-        d.parameters.map((p) => [
+        (found.rows ?? []).map((p) => [
           p.name,
-          digits(p.value),
+          p.initial,
+          p.value,
+          p.sigma,
           raised(p.unit),
-          digits(p.sigma),
-          p.factor === null ? "–" : fixed(p.factor, 5),
-          p.at_bound ? "yes" : "",
+          p.factor,
+          p.bounds,
+          p.at_bound === "no" ? "no" : h("strong", { class: "error" }, p.at_bound),
         ]),
       ),
       d.undetermined.length ? h("p", {}, `Not determined by these data: ${d.undetermined.join(", ")}.`) : null,
@@ -106,11 +111,10 @@ export function open(root, app) {
           fixed(p.before_hz, 3),
           fixed(p.after_hz, 3),
           fixed(p.mac, 4),
-          p.used ? "" : "no",
+          p.used ? "yes" : "no",
         ]),
       ),
       h("details", {}, h("summary", {}, "The report of the fit"), h("pre", { tabindex: "0" }, found.text)),
-      warnings(d.warnings),
     );
     const mark = JSON.stringify([app.state.key, found.written]);
     if (mark === seen) return;
@@ -120,12 +124,5 @@ export function open(root, app) {
     charted(turned, all, ["factors", "frac", "correlations"]);
   }
 
-  /** Six digits, as the command prints them: to be computed with. */
-  const digits = (value) =>
-    value === null
-      ? "–"
-      : Math.abs(value) >= 1e6 || (value !== 0 && Math.abs(value) < 1e-4)
-        ? value.toExponential(5)
-        : String(Number(value.toPrecision(6)));
   return { update, close: work.close };
 }

@@ -3,9 +3,16 @@
 import { get } from "../api.js";
 import { button, fill, h } from "../dom.js";
 
+/** Say how long work has gone on and, where the last time is known, how long it still will. */
+function timed({ seconds, remaining_s: left }) {
+  const since = `${seconds.toFixed(0)} s`;
+  if (left === null) return since;
+  return left < 1 ? `${since}, longer than last time` : `${since}, about ${left.toFixed(0)} s left, by the last time`;
+}
+
 const OFTEN = 400; // milliseconds between questions for what a stage is at
 
-/** Return a panel for one kind of work; `done(result)` shows what came of it. */
+/** Return a panel for one kind of work; `done(result, running, asks, found)` shows what came of it, or has so far. */
 export function worker(app, kind, { start, again, done }) {
   const controls = h("div", { class: "row" }),
     stages = h("ol", { class: "stages", "aria-live": "polite" });
@@ -21,7 +28,7 @@ export function worker(app, kind, { start, again, done }) {
     const running = job?.state === "running";
     fill(
       controls,
-      button(found.result ? again : start, () => app.change("start", { kind }), {
+      button(found.result ? again : typeof start === "function" ? start() : start, () => app.change("start", { kind }), {
         disabled: running,
         class: "primary",
         id: `start-${kind}`,
@@ -29,11 +36,14 @@ export function worker(app, kind, { start, again, done }) {
       running && job.kind === kind
         ? button("Stop", () => app.change("stop"), { id: `stop-${kind}`, class: "danger" })
         : null,
+      running && job.kind === kind && job.remaining_s !== null
+        ? h("progress", { max: String(job.seconds + job.remaining_s), value: String(job.seconds), "aria-label": `${kind}: how far it is` })
+        : null,
       running
         ? h(
             "span",
             { class: "muted" },
-            job.kind === kind ? `${job.seconds.toFixed(0)} s` : `waits: ${job.kind} is running`,
+            job.kind === kind ? timed(job) : `waits: ${job.kind} is running`,
           )
         : null,
       job?.state === "stopped" ? h("span", { class: "muted" }, "Stopped; no result was kept.") : null,
@@ -53,13 +63,14 @@ export function worker(app, kind, { start, again, done }) {
         : null,
     );
     stages.hidden = !running || job.kind !== kind;
-    await done(found.result, running);
+    await done(found.result, running, found.asks, running && job.kind === kind ? job.found : []);
     if (running) timer = setTimeout(() => app.quiet(update()), OFTEN);
   }
 
   return {
     element,
     update,
+    start: () => app.change("start", { kind }),
     close: () => {
       closed = true;
       clearTimeout(timer);

@@ -11,7 +11,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray, IntArray
 from modalkit.simulator.bodies.block.shape import Mesh, Shape
-from modalkit.simulator.bodies.solid.deck import Bricks, finished
+from modalkit.simulator.bodies.solid.deck import Bricks, finished, mesh_lines
 
 Matrix = sparse.csr_array
 
@@ -136,12 +136,7 @@ def _symmetric(entries: FloatArray, order: int) -> sparse.coo_array:
 
 
 def _deck(bricks: Bricks, element: str, poisson: float) -> str:
-    numbers, places = bricks.nodes
-    lines = ["*NODE, NSET=ALL"]
-    lines += [f"{n}, {x:.12g}, {y:.12g}, {z:.12g}" for n, (x, y, z) in zip(numbers, places, strict=True)]
-    lines.append(f"*ELEMENT, TYPE={element}, ELSET=BODY")
-    for e, nodes in enumerate(bricks.elements, start=1):
-        lines += [", ".join(map(str, (e, *nodes[:15]))) + ",", ", ".join(map(str, nodes[15:]))]
+    lines = mesh_lines(bricks, element)
     lines += ["*MATERIAL, NAME=BULK", "*ELASTIC", f"1., {poisson:.12e}", "*DENSITY", "1."]
     lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=BULK"]
     lines += ["*STEP", "*FREQUENCY, SOLVER=MATRIXSTORAGE", "1", "*END STEP"]

@@ -95,6 +95,17 @@ class Point:
     direction: int = 3
 
 
+def mesh_lines(bricks: Bricks, element: str) -> list[str]:
+    """Return nodes and elements of one type as lines of a deck."""
+    numbers, places = bricks.nodes
+    lines = ["*NODE, NSET=ALL"]
+    lines += [f"{n}, {x:.12g}, {y:.12g}, {z:.12g}" for n, (x, y, z) in zip(numbers, places, strict=True)]
+    lines.append(f"*ELEMENT, TYPE={element}, ELSET=BODY")
+    for e, nodes in enumerate(bricks.elements, start=1):
+        lines += [", ".join(map(str, (e, *nodes[:15]))) + ",", ", ".join(map(str, nodes[15:]))]
+    return lines
+
+
 def deck(
     bricks: Bricks,
     *,
@@ -120,12 +131,7 @@ def deck(
     count : int
         Modes [-].
     """
-    numbers, places = bricks.nodes
-    lines = ["*NODE, NSET=ALL"]
-    lines += [f"{n}, {x:.12g}, {y:.12g}, {z:.12g}" for n, (x, y, z) in zip(numbers, places, strict=True)]
-    lines.append("*ELEMENT, TYPE=C3D20R, ELSET=BODY")
-    for e, nodes in enumerate(bricks.elements, start=1):
-        lines += [", ".join(map(str, (e, *nodes[:15]))) + ",", ", ".join(map(str, nodes[15:]))]
+    lines = mesh_lines(bricks, "C3D20R")
     lines += ["*MATERIAL, NAME=BULK", "*ELASTIC", f"{E:.12e}, {poisson:.12e}", "*DENSITY", f"{density:.12e}"]
     lines.append("*SOLID SECTION, ELSET=BODY, MATERIAL=BULK")
     lines += _loose(points, first=len(bricks.elements) + 1)

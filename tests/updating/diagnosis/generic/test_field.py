@@ -64,6 +64,7 @@ def test_a_field_is_found_where_it_is() -> None:
     assert found.changes[0, 3] == pytest.approx(np.log(0.7), abs=0.15)
 
 
+@pytest.mark.long
 def test_nothing_is_left_beside_the_true_cause() -> None:
     posed = problem(State(factors={"E": 0.85}))
     true = explain(posed, Candidate((LIBRARY["E"],)))
