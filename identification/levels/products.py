@@ -48,9 +48,18 @@ class Growth:
         """Which modes are products of others: their constants grow with the force, (n_modes,)."""
         return np.asarray((self.power > HALF) & (self.power > SURE * self.sigma))
 
+    @property
+    def _falls(self) -> BoolArray:
+        """Of which modes the constants fall with the force by more than chance, (n_modes,)."""
+        return np.asarray((self.power < -HALF) & (self.power < -SURE * self.sigma))
+
     def surer(self, other: Growth) -> Growth:
-        """Return of each mode the power that is determined better: of one fit or another of the same hits."""
-        better = self.sigma <= other.sigma
+        """Return of each mode the power that is determined better: of one fit or another of the same hits.
+
+        The constants of neither a mode nor a product fall with the force. Where they do, the poles of the fit are not
+        those of each hit, and the other fit stands.
+        """
+        better = np.where(self._falls == other._falls, self.sigma <= other.sigma, other._falls)
         return Growth(np.where(better, self.power, other.power), np.where(better, self.sigma, other.sigma))
 
 

@@ -69,7 +69,10 @@ def supports_at(structure: Structure, state: State) -> tuple[Yielding, ...]:
         return ()
     regions = len(structure.spec.regions)
     by = {term.kind: region_scales(term, state, regions) for term in structure.terms}  # one term of each kind
-    return tuple(one.at(by["stiffness"], by["mass"]) for one in state.yielding.values())
+    return tuple(
+        one.at(by["stiffness"], by["mass"], carried=state.carried.get(name, 1.0))
+        for name, one in state.yielding.items()
+    )
 
 
 def added(structure: Structure, state: State) -> dict[str, tuple[FloatArray, ...]]:

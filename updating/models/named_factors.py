@@ -33,6 +33,12 @@ def regions_of(spec: Spec, name: str) -> tuple[tuple[int, ...], str]:
     return tuple(i for i, r in enumerate(spec.regions) if region and r.name == region), factor
 
 
+def carried_by(spec: Spec) -> dict[str, str]:
+    """Return the supports of imported matrices by the name of the doubt in the mass that each carries along."""
+    supports = () if spec.imported is None else spec.imported.supports
+    return {f"{support.name}.carried": support.name for support in supports}
+
+
 def departure(spec: Spec, values: Mapping[str, float]) -> State:
     """Return the departure that factors by their names are [-]."""
     whole = {name: value for name, value in values.items() if "." not in name}

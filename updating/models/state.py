@@ -92,6 +92,8 @@ class State(Displayed):
         Masses on springs that hang on the structure: each adds a degree of freedom behind those of the basis.
     yielding : mapping of str to Yielding
         Supports of imported matrices that give way, by name, as the nominal model pulls at them.
+    carried : mapping of str to float
+        Factors on the mass that each of these carries along, which is estimated [-].
     drift : float
         Relative change of all frequencies from the first point of the test to the last, about the state itself, which
         is that in the middle of the test [-].
@@ -118,6 +120,7 @@ class State(Displayed):
     fluid: Mapping[str, float] = field(default_factory=_nothing)
     absorbers: tuple[Absorber, ...] = ()
     yielding: Mapping[str, Yielding] = field(default_factory=lambda: MappingProxyType({}))
+    carried: Mapping[str, float] = field(default_factory=_nothing)
     drift: float = 0.0
 
     def plus(self, other: State) -> State:
@@ -146,6 +149,7 @@ class State(Displayed):
             fluid=MappingProxyType({**self.fluid, **other.fluid}),
             absorbers=self.absorbers + other.absorbers,
             yielding=MappingProxyType(together(self.yielding, other.yielding)),
+            carried=MappingProxyType(_multiplied(self.carried, other.carried)),
             drift=self.drift + other.drift,
         )
 

@@ -53,20 +53,28 @@ class Yielding:
         """Return the same support on the springs of both, one behind the other: compliances add."""
         return replace(self, compliance=self.compliance + other.compliance)
 
-    def at(self, stiffness: FloatArray, mass: FloatArray) -> Yielding:
-        """Return the same support where each region is some times as stiff and heavy, each (n_regions + 1,) [-]."""
-        if np.all(stiffness == 1.0) and np.all(mass == 1.0):
+    def at(self, stiffness: FloatArray, mass: FloatArray, *, carried: float = 1.0) -> Yielding:
+        """Return the same support where each region is some times as stiff and heavy.
+
+        Parameters
+        ----------
+        stiffness, mass : (n_regions + 1,) array
+            Factors of the regions [-].
+        carried : float
+            Factor of the mass that the support carries along, whatever the regions weigh [-].
+        """
+        if np.all(stiffness == 1.0) and np.all(mass == 1.0) and carried == 1.0:
             return self
-        held, carried = self.held_by * stiffness, self.carried_by * mass
-        stiffer, heavier = held.sum(), carried.sum()
+        held, weights = self.held_by * stiffness, self.carried_by * mass
+        stiffer, heavier = held.sum(), weights.sum()
         return replace(
             self,
             loads=self.loads * stiffer,
             own=self.own * stiffer,
-            mass=self.mass * heavier,
-            inertia=self.inertia * heavier,
+            mass=self.mass * heavier * carried,
+            inertia=self.inertia * heavier * carried,
             held_by=held / stiffer,
-            carried_by=carried / heavier,
+            carried_by=weights / heavier,
         )
 
     @cached_property

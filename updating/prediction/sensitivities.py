@@ -7,13 +7,14 @@ all modes of the reduced basis (Fox and Kapoor 1968).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.models.named_factors import regions_of
+from updating.models.base import supports_at
+from updating.models.named_factors import carried_by, regions_of
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.models.state import NOMINAL, State
@@ -76,12 +77,13 @@ class Sensitivities:
         whole = vectors.T @ np.tensordot(self._powers, forces, axes=1)
         parts = np.einsum("im,tim->tm", modes, forces[heavy])
         heavier = -self._powers[:, heavy] @ parts / np.where(lam == 0, 1.0, lam)
+        masses = {**{name: one.mass for name, one in self.bodies.items()}, **self._carried(state)}
         for k, (name, (regions, factor)) in enumerate(zip(self.names, self._regions, strict=True)):
-            if name in self.bodies:
-                mass = self.bodies[name].mass[:n, :n]
+            if name in masses:
+                mass = masses[name][:n, :n]
                 whole[k] = -vectors.T @ (mass @ modes * lam)
                 heavier[k] = np.sum(modes * (mass @ modes), axis=0)
-            elif regions or state.yielding:
+            elif name not in self._supports and (regions or state.yielding):
                 stiffness, mass = self.reduced.sensitivity(state, factor, regions)
                 whole[k] = vectors.T @ (stiffness @ modes - mass @ modes * lam)
                 heavier[k] = np.sum(modes * (mass @ modes), axis=0)
@@ -92,6 +94,17 @@ class Sensitivities:
         weights = np.clip(whole / gap, -LARGEST_TURN, LARGEST_TURN)
         weights[:, chosen, own] = -0.5 * heavier
         return np.asarray(whole[:, chosen, own] / (2 * np.maximum(lam, 1e-12))), np.asarray(weights)
+
+    def _carried(self, state: State) -> dict[str, FloatArray]:
+        """Return the mass that each support carries along as it gives way, as it is estimated, (r, r) [kg in w]."""
+        plain = supports_at(self.reduced.structure, replace(state, carried={}))
+        known = dict(zip(state.yielding, plain, strict=True))
+        return {name: known[one].carried for name, one in self._supports.items() if one in known}
+
+    @cached_property
+    def _supports(self) -> dict[str, str]:
+        """The supports of imported matrices, by the name of the doubt in what each carries along."""
+        return carried_by(self.spec)
 
     @cached_property
     def _powers(self) -> FloatArray:

@@ -10,12 +10,16 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.registration import registration_doubt, with_registration
 from updating.models.base import FACTORS
-from updating.models.named_factors import departure, regions_of, unassigned
+from updating.models.named_factors import carried_by, departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
 from updating.prediction.bodies import displaced
 from updating.prediction.predict import Predictor
 from updating.thresholds import STATED_MASS_DOUBT
 from updating.tolerances import Tolerances
+
+CARRIED_DOUBT = 1.0
+"""Standard deviation of the mass that a support carries along, over what is estimated [-]: nothing or twice as much.
+Of quadratic bricks, whose corners weigh less than nothing, it is a seventh below nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,14 +45,19 @@ class Doubted:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Factors of the whole and of regions, masses and places of bodies."""
+        """Factors of the whole and of regions, masses and places of bodies, what supports carry along."""
         known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
         whole = [n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0]
         own = dict.fromkeys(
             [*self.tolerances.parts, *self.tolerances.bounds, *unassigned(self.predictor.spec)]
         )
         regional = [n for n in own if self._sigma(n) > 0 and self._of_regions(n, known)]
-        return (*whole, *regional, *self.predictor.body_changes)
+        return (*whole, *regional, *self.predictor.body_changes, *self._carried)
+
+    @cached_property
+    def _carried(self) -> dict[str, str]:
+        """The supports that may carry another mass along than is estimated, by the names of these doubts."""
+        return carried_by(self.predictor.spec)
 
     def _of_regions(self, name: str, known: set[str]) -> bool:
         """Return whether a name is a factor of regions of the model."""
@@ -63,7 +72,7 @@ class Doubted:
     def _sigma(self, name: str) -> float:
         if (change := self.predictor.body_changes.get(name)) is not None:
             return STATED_MASS_DOUBT if change.axis is None else self._place_sigma(change.axis, change.at)
-        return self.tolerances.factor(name)
+        return CARRIED_DOUBT if name in self._carried else self.tolerances.factor(name)
 
     def _place_sigma(self, axis: int, at: float) -> float:
         """Return the doubt in the place of a body along an axis: its own, and that in where all places lie [m]."""
@@ -76,9 +85,13 @@ class Doubted:
 
     @cached_property
     def relative(self) -> FloatArray:
-        """The standard deviations, those of places relative to the size of the model, (n_names,) [-]."""
+        """The standard deviations, those of places relative to the size of the model, (n_names,) [-].
+
+        What a support carries along is next to nothing of what the structure weighs.
+        """
         places = {name for name, change in self.predictor.body_changes.items() if change.of_place}
         size = [self.predictor.spec.length if name in places else 1.0 for name in self.names]
+        size = [np.inf if name in self._carried else one for name, one in zip(self.names, size, strict=True)]
         return np.asarray(self.sigmas / size)
 
     def departure(self, shift: FloatArray, stage: Predictor) -> State:
@@ -95,6 +108,8 @@ class Doubted:
             return NOMINAL
         moved = dict(zip(self.names, (shift * self.sigmas).tolist(), strict=True))
         bodies = stage.body_changes
-        factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in bodies}
+        others = bodies.keys() | self._carried.keys()
+        factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in others}
         masses = displaced(stage.reduced, stage.spec, moved)
-        return departure(self.predictor.spec, factors).plus(State(mass=masses))
+        carried = {support: 1.0 + moved[name] for name, support in self._carried.items()}
+        return departure(self.predictor.spec, factors).plus(State(mass=masses, carried=carried))

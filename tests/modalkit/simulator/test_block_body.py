@@ -129,7 +129,14 @@ def test_a_trial_is_drawn_written_and_diagnosed(kind: str, effect: str, tmp_path
         assert path.read_bytes() == (tmp_path / "again" / path.name).read_bytes()
     case = open_study(read_study(tmp_path / "first" / "study.toml")).case
     found = diagnose(case, library=[LIBRARY[name] for name in (effect, "E", "sensor_mass")])
-    assert found.sets == ((effect,),), found.table()
+    first, *more = found.sets
+    assert first == (effect,), found.table()
+    # whether a second foot gives way a little, too, may stay open: one in ten, as chance has it
+    assert all(effect in one for one in more), found.table()
+    stiffness = found.ranking[0].parameters[f"{effect}.stiffness"] if effect == "clamp_translation" else None
+    if stiffness is not None:
+        hidden = drawn.truth.parameters[f"{effect}.stiffness"]
+        assert stiffness.low95 < hidden < stiffness.high95
     named = {value for key, value in found.ranking[0].forms[0].items() if key in ("joint", "support")}
     at = np.array(found.where.locations[0][:2])
     assert len(named) == 1

@@ -139,6 +139,25 @@ def test_the_mass_that_a_support_held_is_what_its_rows_had(frame: ModuleType, im
     assert support.inertia[:, :3] == pytest.approx(beside[:, :3], abs=1e-9 * np.abs(beside).max())
 
 
+def test_another_mass_that_a_support_carries_along_moves_modes_as_its_derivative_states(
+    predictor: Predictor,
+) -> None:
+    soft = LIBRARY["clamp_translation"].state(
+        predictor, {"support": "foot_left", "stiffness": 3e5, "direction": "x"}
+    )
+    here = predictor.predict(soft, factors=("foot_left.carried", "foot_right.carried"), count=6)
+    step = 1e-3
+    low, high = (
+        predictor.predict(soft.plus(State(carried={"foot_left": 1.0 + by})), count=6) for by in (-step, step)
+    )
+    by = np.log(high.frequency / low.frequency) / (2 * step)
+    assert by.min() < -1e-4
+    assert here.log_frequency_by[:, 0] == pytest.approx(by, rel=1e-3, abs=1e-3 * np.abs(by).max())
+    constants = (high.constants - low.constants) / (2 * step)
+    assert here.constants_by[..., 0] == pytest.approx(constants, abs=5e-3 * np.abs(constants).max())
+    assert not here.log_frequency_by[:, 1].any()  # the other foot holds
+
+
 def test_hypotheses_that_cannot_be(frame: ModuleType, imported: Imported) -> None:
     own = imported.stiffness
     with pytest.raises(StudyError, match="changes nothing"):
