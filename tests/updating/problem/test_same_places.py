@@ -49,7 +49,8 @@ def test_a_baseline_under_other_numbers_gives_the_same_answer() -> None:
         diagnose(case_of(test, baseline=one), library=[LIBRARY["E"]], rng=np.random.default_rng(0))
         for one in (baseline, other)
     ]
-    assert found[0].p_value == pytest.approx(found[1].p_value, rel=1e-9)
+    # a maximum is found to steps of 1e-6 sigma, and points in another order end it at another of these
+    assert found[0].p_value == pytest.approx(found[1].p_value, rel=1e-6)
     assert not found[0].significant and not found[1].significant
     assert not any("were not measured in it" in w for one in found for w in one.warnings)
 
