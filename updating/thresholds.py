@@ -16,6 +16,10 @@ STATED_MASS_DOUBT = 0.02
 """By how much a body weighs more or less than stated, relative (1 sigma) [-]. Judged: a data sheet's rounding, wax and
 the cable's end. Doubled: a change of a sensor's mass must be twice as large to be seen."""
 
+CARRIED_DOUBT = 1.0
+"""Standard deviation of the mass that a support carries along, over what is estimated [-]: nothing or twice as much.
+Of a foot of quadratic bricks, whose corners have negative shares, it is -0.15 of the estimate."""
+
 UNREACHED_MODE_DOUBT = 0.01
 """Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others, relative [-].
 Judged: what tolerances of one per cent leave. Doubled: such a mode counts a quarter as much."""

@@ -14,12 +14,8 @@ from updating.models.named_factors import carried_by, departure, regions_of, una
 from updating.models.state import NOMINAL, State
 from updating.prediction.bodies import displaced
 from updating.prediction.predict import Predictor
-from updating.thresholds import STATED_MASS_DOUBT
+from updating.thresholds import CARRIED_DOUBT, STATED_MASS_DOUBT
 from updating.tolerances import Tolerances
-
-CARRIED_DOUBT = 1.0
-"""Standard deviation of the mass that a support carries along, over what is estimated [-]: nothing or twice as much.
-Of quadratic bricks, whose corners weigh less than nothing, it is a seventh below nothing."""
 
 
 @dataclass(frozen=True, eq=False)
