@@ -147,12 +147,32 @@ def _lines(
         square = np.sum(weight * left**2, axis=1)
         floor = np.maximum(floor, square / weight.sum(axis=1))
     slope, wider = gain[:, 1], (stats.t.isf(stats.norm.sf(PLAIN), freedom) / PLAIN) ** 2
-    total = np.maximum(wider * square / freedom * own, np.sum(slope**2 * noise, axis=1))
-    alike = wider * _common(weight, left) / (1.0 - design.shape[2] / design.shape[1])
+    alike = _common(weight, left) / (1.0 - design.shape[2] / design.shape[1])
+    course, known = _course(weight, left, alike)
+    # points weigh differently in each mode, and what all modes did beside the line would tilt each by another bit
+    along = np.where(seen, shifts - course, 0.0)
+    left = along - np.einsum("rgn,rnh,rh->rg", design, gain, along)
+    spread = np.sum(weight * left**2, axis=1) / (freedom * (1.0 - known / len(shifts))) * own
     least = np.sum(slope**2 * noise, axis=1)
-    sigma = np.sqrt(np.maximum(total - alike * np.sum(slope**2, axis=1), least))
-    mean = (slope / total[:, None]).sum(axis=0) / np.sum(1.0 / total)
-    return np.sum(slope * shifts, axis=1), sigma, float(np.sqrt(alike.min() * np.sum(mean**2)))
+    variance = np.maximum(wider * spread, least)
+    mean = (slope / variance[:, None]).sum(axis=0) / np.sum(1.0 / variance)
+    common = float(np.sqrt((wider * alike).min() * np.sum(mean**2)))
+    return np.sum(slope * along, axis=1), np.sqrt(variance), common
+
+
+def _course(weight: FloatArray, left: FloatArray, alike: float) -> tuple[FloatArray, float]:
+    """Return what all modes did together beside their lines in each set of FRFs, (n_groups,), and how well it is known.
+
+    Parameters
+    ----------
+    weight, left : (n_modes, n_groups) arrays
+        Inverse variance, and distance from the line [-].
+    alike : float
+        Variance of it from set to set [-].
+    """
+    whole = np.maximum(weight.sum(axis=0), np.finfo(float).tiny)
+    known = alike / (alike + 1.0 / whole)
+    return np.asarray(known * np.sum(weight * left, axis=0) / whole), float(known.mean())
 
 
 def _gain(design: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
