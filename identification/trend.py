@@ -143,21 +143,25 @@ def _lines(
     for _ in range(ROUNDS):
         weight = np.where(seen, 1.0 / (noise + floor[:, None]), 0.0)
         gain, own = _gain(design, weight)
-        left = shifts - np.einsum("rgn,rnh,rh->rg", design, gain, shifts)
-        square = np.sum(weight * left**2, axis=1)
+        left = _beside(design, gain, shifts)
+        alike = _common(weight, left) / (1.0 - design.shape[2] / design.shape[1])
+        course, known = _course(weight, left, alike)
+        # points weigh differently in each mode, and what all modes did beside the line would tilt each by another bit
+        along = np.where(seen, shifts - course, 0.0)
+        square = np.sum(weight * _beside(design, gain, along) ** 2, axis=1)
         floor = np.maximum(floor, square / weight.sum(axis=1))
     slope, wider = gain[:, 1], (stats.t.isf(stats.norm.sf(PLAIN), freedom) / PLAIN) ** 2
-    alike = _common(weight, left) / (1.0 - design.shape[2] / design.shape[1])
-    course, known = _course(weight, left, alike)
-    # points weigh differently in each mode, and what all modes did beside the line would tilt each by another bit
-    along = np.where(seen, shifts - course, 0.0)
-    left = along - np.einsum("rgn,rnh,rh->rg", design, gain, along)
-    spread = np.sum(weight * left**2, axis=1) / (freedom * (1.0 - known / len(shifts))) * own
+    spread = square / (freedom * (1.0 - known / len(shifts))) * own
     least = np.sum(slope**2 * noise, axis=1)
     variance = np.maximum(wider * spread, least)
     mean = (slope / variance[:, None]).sum(axis=0) / np.sum(1.0 / variance)
     common = float(np.sqrt((wider * alike).min() * np.sum(mean**2)))
     return np.sum(slope * along, axis=1), np.sqrt(variance), common
+
+
+def _beside(design: FloatArray, gain: FloatArray, shifts: FloatArray) -> FloatArray:
+    """Return how far shifts lie from their lines, (n_modes, n_groups)."""
+    return np.asarray(shifts - np.einsum("rgn,rnh,rh->rg", design, gain, shifts))
 
 
 def _course(weight: FloatArray, left: FloatArray, alike: float) -> tuple[FloatArray, float]:

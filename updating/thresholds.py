@@ -20,6 +20,11 @@ CARRIED_DOUBT = 1.0
 """Standard deviation of the mass that a support carries along, over what is estimated [-]: nothing or twice as much.
 Of a foot of quadratic bricks, whose corners have negative shares, it is -0.15 of the estimate."""
 
+IMPORTED_MESH_DOUBT = 0.005
+"""How far an imported mesh of bricks leaves each frequency off beside the others, relative, at the most (1 sigma) [-]:
+it cannot be refined here. Twelve quadratic bricks along a plate with ribs, or an angle bolted to one, are 0.1 to 0.5 %
+from sixteen. Doubled: one mode of a fine mesh must change by a tenth of a per cent to be seen, not by half of that."""
+
 UNREACHED_MODE_DOUBT = 0.01
 """Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others, relative [-].
 Judged: what tolerances of one per cent leave. Doubled: such a mode counts a quarter as much."""

@@ -151,3 +151,23 @@ def test_chance_hardly_makes_a_plain_drift_of_few_points(points: int) -> None:
         )
         plain += bool(abs(slope[0]) > 4 * np.hypot(sigma[0], common))
     assert plain < 12
+
+
+def test_a_course_that_bends_tilts_no_mode_against_the_others() -> None:
+    """Each mode shows at points of its own; what all do together beside a line is none's alone."""
+    rng, points, modes = np.random.default_rng(4), 14, 6
+    place = np.linspace(-0.5, 0.5, points)
+    ratios, apart = [], []
+    for _ in range(200):
+        shape = np.cos(np.pi * np.arange(1, modes + 1)[:, None] * (place + rng.random()))
+        noise = 3e-6 / np.maximum(np.abs(shape), 0.03)
+        course = 1e-4 * (np.cos(2 * np.pi * (place + rng.random())) + 2 * place**2)
+        shifts = course + noise * rng.standard_normal((modes, points))
+        design = np.tile(np.stack([np.ones(points), place], axis=1), (modes, 1, 1))
+        value, sigma, _ = _lines(shifts, noise**2, design)
+        weight = sigma**-2.0
+        away = value - weight @ value / weight.sum()
+        ratios.append(np.mean((away / sigma) ** 2))
+        apart.append(np.median(np.abs(away)))
+    assert 0.4 < np.mean(ratios) < 1.3
+    assert np.mean(apart) < 6e-6  # 7.9e-6 where the course stays in the slope of each mode

@@ -25,10 +25,13 @@ class Frequencies(Quantity):
         Variance of ln f that is no noise of the test: what stands in the model beforehand and its mesh leave off [-].
     common : (n_modes, k) array
         What the model leaves off in ln f alike in all modes, per standard deviation: by its mesh, its theory [-].
+    mesh : float
+        How far a mesh that nobody refined leaves each ln f off, at the most; with the share of idealisations [-].
     """
 
     further: FloatArray
     common: FloatArray
+    mesh: float = 0.0
 
     @property
     def present(self) -> bool:
@@ -39,7 +42,7 @@ class Frequencies(Quantity):
         """Return ln f beside a state; what mesh, theory and a candidate's idealisation leave off are named doubts."""
         test, now, before = self.setting.measured, view.now, self.setting.before
         variance, by = self._known_errors, now.log_frequency_by
-        named, idealised = self.common, None
+        named, left = self.common, np.full(len(variance), self.mesh**2)
         if before is not None:
             doubt, known = before.frequency(now)
             variance, by = variance + doubt, by - known
@@ -47,13 +50,13 @@ class Frequencies(Quantity):
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
-            variance, named = variance + doubtful**2, np.column_stack([named, doubtful])
-            idealised = doubtful**2
+            left, named = left + doubtful**2, np.column_stack([named, doubtful])
         residual = np.log(test.frequency / now.frequency)
         modes = np.arange(len(residual))
         return Block(
-            "frequency", residual, variance, by, named, np.zeros((len(modes), 0)), modes, idealised=idealised
-        )
+            "frequency", residual, variance + left, by, named, np.zeros((len(modes), 0)), modes,
+            idealised=left if left.any() else None,
+        )  # fmt: skip
 
     @cached_property
     def _known_errors(self) -> FloatArray:

@@ -43,6 +43,7 @@ from updating.problem.doubted import Doubted
 from updating.problem.theory_error import TheoryError, left_out
 from updating.test_data.measured import Measured
 from updating.thresholds import (
+    IMPORTED_MESH_DOUBT,
     STRAINED_LINEARISATION,
     UNSEEN_SHARES,
 )
@@ -330,7 +331,7 @@ class SpecimenProblem:
         left_out, uneven = self._left_out()
         further = self._accepted_variance() + uneven
         every = (
-            Frequencies(setting, further, left_out),
+            Frequencies(setting, further, left_out, self._mesh_doubt),
             Dampings(setting),
             Constants(setting, phases, further),
             phases,
@@ -363,6 +364,13 @@ class SpecimenProblem:
         """Return what mesh and theory leave off in ln f, column by column and mode by mode; a baseline took it out."""
         known = None if self.baseline is not None else self.theory_error
         return left_out(known, len(self.measured.frequency))
+
+    @property
+    def _mesh_doubt(self) -> float:
+        """How far an imported mesh of bricks leaves each ln f off, at the most; a baseline took it out [-]."""
+        imported = self.predictor.spec.imported
+        solid = imported is not None and imported.places.solid
+        return IMPORTED_MESH_DOUBT if solid and self.baseline is None else 0.0
 
     def _accepted_variance(self) -> FloatArray:
         """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-].

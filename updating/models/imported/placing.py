@@ -102,6 +102,12 @@ class Places:
             motions.append(Sparse(sparse.coo_array(entries, (len(node), order)).tocsr()))
         return cls(node, table.places[first], tuple(motions[:3]), tuple(motions[3:]), known)
 
+    @property
+    def solid(self) -> bool:
+        """Whether the nodes are those of bricks: they lie in three dimensions, move along all axes and do not turn."""
+        spread = len(_spread(self.at)[1]) if len(self.at) > NEIGHBOURS[1] else 0
+        return spread == 3 and bool(self.known[:3].any(axis=1).all()) and not self.known[3:].any()
+
     @cached_property
     def _trees(self) -> tuple[tuple[IntArray, KDTree] | None, ...]:
         chosen = [np.flatnonzero(known) for known in self.known]

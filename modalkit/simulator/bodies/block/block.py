@@ -157,8 +157,8 @@ class Block(Parted):
         """Return rows, (n, order), that read ``w``, ``slope_x`` or ``slope_y`` at places (n, 2) [m]."""
         places = np.asarray(places, dtype=float).reshape(-1, 2)
         bricks = self.bricks
-        along = _spline(bricks.mesh.x, places[:, 0] - self.start, slope=quantity == "slope_x")
-        across = _spline(bricks.mesh.y, places[:, 1], slope=quantity == "slope_y")
+        along = _cubic(bricks.mesh.x, places[:, 0] - self.start, slope=quantity == "slope_x")
+        across = _cubic(bricks.mesh.y, places[:, 1], slope=quantity == "slope_y")
         found = np.zeros((len(places), bricks.order))
         found[:, 3 * bricks.top.ravel() + 2] = np.einsum("ni,nj->nij", along, across).reshape(len(places), -1)
         return found
@@ -195,7 +195,14 @@ def _linear(lines: FloatArray, place: float) -> FloatArray:
     return np.array([np.interp(place, lines, row) for row in np.eye(len(lines))])
 
 
-def _spline(lines: FloatArray, places: FloatArray, *, slope: bool) -> FloatArray:
-    """Return weights of the values at lines in a cubic spline's value or slope at places."""
-    spline = scipy.interpolate.make_interp_spline(lines, np.eye(len(lines)), k=3)
-    return np.asarray(spline(places, nu=int(slope)))
+def _cubic(lines: FloatArray, places: FloatArray, *, slope: bool) -> FloatArray:
+    """Return weights of the values at lines in a local cubic's value or slope at places.
+
+    Its slope at a line is that of the parabola through the neighbours. A spline over all lines rings above the edge of
+    a foot.
+    """
+    values = np.eye(len(lines))
+    local = scipy.interpolate.CubicHermiteSpline(
+        lines, values, np.gradient(values, lines, axis=0, edge_order=2)
+    )
+    return np.asarray(local(places, nu=int(slope)))
