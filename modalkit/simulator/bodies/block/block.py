@@ -121,7 +121,11 @@ class Block(Parted):
     def _beside(self, x: float, y: float, axis: int) -> Matrix:
         """Return the row that reads the motion at a place of the upper face, by the crossings about it."""
         bricks = self.bricks
-        shares = np.multiply.outer(_linear(bricks.mesh.x, x - self.start), _linear(bricks.mesh.y, y))
+        along, across = (
+            _cubic(lines, np.array([at]), slope=False)[0]
+            for lines, at in ((bricks.mesh.x, x - self.start), (bricks.mesh.y, y))
+        )
+        shares = np.multiply.outer(along, across)
         used = np.flatnonzero(shares.ravel())
         columns = 3 * bricks.top.ravel()[used] + axis
         return Matrix(
@@ -188,11 +192,6 @@ def _solved(block: Block, count: int) -> tuple[FloatArray, FloatArray]:
     values, vectors = eigsh(held, count, sparse.csc_array(mass), sigma=0.0, v0=start)
     order = np.argsort(values)
     return frozen_array(np.sqrt(values[order])), frozen_array(moves @ vectors[:, order])
-
-
-def _linear(lines: FloatArray, place: float) -> FloatArray:
-    """Return weights of values at lines in what lies between the nearest two."""
-    return np.array([np.interp(place, lines, row) for row in np.eye(len(lines))])
 
 
 def _cubic(lines: FloatArray, places: FloatArray, *, slope: bool) -> FloatArray:
