@@ -15,6 +15,7 @@ from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 from updating.problem.theory_error import TheoryError, discrepancy, theory_error
 from updating.test_data.measured import Measured
+from updating.thresholds import IMPORTED_MESH_DOUBT
 
 __all__ = [
     "TheoryError",
@@ -41,7 +42,11 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
         The model.
     """
     if not found.known:
-        return ["imported matrices cannot be refined: whether they have converged is not examined"]
+        solid = spec.imported is not None and spec.imported.places.solid
+        doubt = (
+            f"; each frequency may be off by up to {_percent(IMPORTED_MESH_DOUBT)} (1 sigma)" if solid else ""
+        )
+        return [f"imported matrices cannot be refined: whether they have converged is not examined{doubt}"]
     noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
     notes = []
     worst = int(np.argmax(np.abs(found.mesh) / noise))
