@@ -63,6 +63,12 @@ def test_what_setting_data_aside_explains_by_itself_has_no_share() -> None:
     assert answer(*rows) == ("named", (("E",),))
 
 
+def test_a_cause_that_setting_data_aside_explains_better_without_it_is_none() -> None:
+    """One that sets nothing aside is far behind what sets a bad channel aside and names no cause."""
+    rows = row("E", 0.6, 100.0, without=94.0), row("density", 1e-12, 70.0)
+    assert answer(*rows)[1] == ()
+
+
 def test_a_set_at_the_end_of_its_range_that_holds_little_is_no_rival() -> None:
     rows = row("E", 0.96, 100.0), row("density", 0.04, 99.5, at_end=True)
     assert answer(*rows) == ("named", (("E",),))

@@ -32,20 +32,23 @@ def is_significant(found: Search, p_value: float, *, rules: DecisionRules = DEFA
     Where that fit is one which chance makes seldom, and the empty set stays credible, there is no gap that is sure.
     """
     rows = [row for row in found.compared if row.names]
-    gains = [
-        row.explanation.log_evidence - _of_nothing(found, row) for row in rows if not rejected(row, rules)
-    ]
+    nothing = _of_nothing(found)
+    gains = [row.explanation.log_evidence - nothing for row in rows if not rejected(row, rules)]
     if p_value < rules.significant_gap or max(gains, default=-np.inf) > rules.effect_shows_gap:
         return True
-    set_aside = max((_of_nothing(found, row) for row in rows), default=-np.inf)
-    nothing = found.empty.probability * np.exp(set_aside - found.empty.explanation.log_evidence)
-    share = nothing / (nothing + sum(row.probability for row in rows))
+    probability = found.empty.probability * np.exp(nothing - found.empty.explanation.log_evidence)
+    share = probability / (probability + sum(row.probability for row in rows))
     return bool(share < 1 - rules.credible_share and _by_chance(found, rules) < rules.chance_of_a_fit)
 
 
-def _of_nothing(found: Search, row: Compared) -> float:
-    """Return the log evidence of no effect, with the data set aside that a row sets aside if that is more [-]."""
-    return max(found.empty.explanation.log_evidence, row.without)
+def _of_nothing(found: Search) -> float:
+    """Return the log evidence of no effect, with data set aside where that explains more [-]."""
+    return max(found.empty.explanation.log_evidence, _set_aside(found))
+
+
+def _set_aside(found: Search) -> float:
+    """Return the log evidence of no effect beside what any set sets aside, the most of these [-]."""
+    return max((row.without for row in found.compared if row.names), default=-np.inf)
 
 
 def _by_chance(found: Search, rules: DecisionRules) -> float:
@@ -148,10 +151,10 @@ def rejected(row: Compared, rules: DecisionRules) -> bool:
 
 
 def _better(found: Search, rules: DecisionRules) -> list[Compared]:
-    """Return the sets that fit and whose evidence is beyond that of the empty one, with the same data set aside."""
+    """Return the sets that fit and whose evidence is beyond that of the empty one, with or without data set aside."""
     rows = [row for row in found.compared if row.names and not rejected(row, rules)]
-    least = rules.beyond_nothing
-    return [row for row in rows if row.explanation.log_evidence > _of_nothing(found, row) + least]
+    least = _of_nothing(found) + rules.beyond_nothing
+    return [row for row in rows if row.explanation.log_evidence > least]
 
 
 def _credible(found: Search, rules: DecisionRules, unnamed: float = 0.0) -> tuple[tuple[str, ...], ...]:
@@ -171,11 +174,8 @@ def _credible(found: Search, rules: DecisionRules, unnamed: float = 0.0) -> tupl
     if not better:
         return ()
     first = better[0]
-    rows = [
-        row
-        for row in found.compared
-        if row.names and row.explanation.log_evidence > row.without + rules.beyond_nothing
-    ]
+    least = _set_aside(found) + rules.beyond_nothing
+    rows = [row for row in found.compared if row.names and row.explanation.log_evidence > least]
     stated = _statements(first, rows, rules)
     total = max(sum(row.probability for row in rows), 1e-300)
     sets: list[tuple[str, ...]] = []
