@@ -22,7 +22,7 @@ class DrawRanges:
         and what it models by matrices: ``frame``, bars between joints, ``ribbed``, a plate with ribs, and ``bracket``,
         the last two of bricks. Those of bricks need CalculiX.
     plates : float
-        Share of plates where there are other kinds too; that of solids likewise [-].
+        Share of each kind beside beams [-]; all kinds are alike where that leaves nothing to beams, or there are none.
     effects : tuple of str
         What may be hidden; empty for everything that the rig has. ``none`` among them keeps its share.
     none : float

@@ -79,7 +79,8 @@ def draw_setup(rng: np.random.Generator, *, plan: DrawRanges = _EVERYTHING) -> S
 
 def _draw_kind(rng: np.random.Generator, plan: DrawRanges) -> str:
     others = [kind for kind in plan.kinds if kind != "beam"]
-    share = plan.plates if "beam" in plan.kinds else 1 / len(others)
+    some_left = "beam" in plan.kinds and len(others) * plan.plates < 1
+    share = plan.plates if some_left else 1 / len(plan.kinds)
     borders = share * np.arange(1, len(others) + 1)
     return [*others, "beam"][int(np.searchsorted(borders, rng.random(), side="right"))]
 

@@ -13,8 +13,8 @@ import scipy.stats
 
 from acquisition.errors import StudyError
 from modalkit.blind.trial import Trial, Truth, draw_trial
-from modalkit.simulator.drawing.ranges import DrawRanges
-from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
+from modalkit.simulator.drawing.ranges import KINDS, DrawRanges
+from modalkit.simulator.drawing.specimen import _draw_kind, draw_setup, lacks_shear
 from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.hidden.choose import choose_hidden_effects, choose_sort, draw_strength
 from modalkit.simulator.scene import draw_scene, nominal_scene
@@ -205,6 +205,14 @@ def test_leaving_out_takes_the_true_effect_away() -> None:
 
 
 PLATES = DrawRanges(kinds=("plate",))
+
+
+@pytest.mark.parametrize("kinds", [KINDS, KINDS[:2], KINDS[:4], KINDS[1:]])
+def test_every_kind_that_is_asked_for_is_drawn(kinds: tuple[str, ...]) -> None:
+    rng, plan = np.random.default_rng(3), DrawRanges(kinds=kinds)
+    counts = Counter(_draw_kind(rng, plan) for _ in range(2000))
+    assert set(counts) == set(kinds)
+    assert min(counts.values()) > 0.8 * 2000 / max(len(kinds), 3)
 
 
 @pytest.mark.long
