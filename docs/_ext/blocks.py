@@ -80,6 +80,10 @@ ROUNDED = Decimal("0.03")
 """How far apart, relative to their size, two numbers are that print the same result [-]."""
 
 
+MEASURED = re.compile(r" (%|sigma)")
+"""What follows a whole number that is no count."""
+
+
 PRECISE = 5
 """From so many digits on a number is a measurement's, and has its last digit [-]."""
 
@@ -88,19 +92,22 @@ def alike(written: str, printed: str) -> bool:
     """Say whether a line prints the same: every word, numbers to one unit of their last digit, of few digits to 3 %.
 
     So much another processor's rounding moves: a search that rests a step earlier, a sample more or less. Whole numbers
-    are counts, and equal. Widths of columns follow from the numbers and do not matter.
+    are counts, and equal, but those of per cent and sigma. Widths of columns follow from the numbers and do not matter.
     """
     if written == printed:
         return True
     words = [NUMBER.sub("#", line).split() for line in (written, printed)]
-    numbers = [NUMBER.findall(line) for line in (written, printed)]
-    return words[0] == words[1] and all(_near(a, b) for a, b in zip(*numbers, strict=True))
+    numbers = [list(NUMBER.finditer(line)) for line in (written, printed)]
+    return words[0] == words[1] and all(
+        _near(a.group(), b.group(), counted=MEASURED.match(written, a.end()) is None)
+        for a, b in zip(*numbers, strict=True)
+    )
 
 
-def _near(a: str, b: str) -> bool:
+def _near(a: str, b: str, *, counted: bool) -> bool:
     if a == b:
         return True
-    if not set(a + b) & set(".e"):
+    if counted and not set(a + b) & set(".e"):
         return False
     one, other = Decimal(a), Decimal(b)
     unit = max(Decimal(1).scaleb(int(d.as_tuple().exponent)) for d in (one, other))
