@@ -146,7 +146,7 @@ def _lines(
         left = _beside(design, gain, shifts)
         alike = _common(weight, left) / (1.0 - design.shape[2] / design.shape[1])
         course, known = _course(weight, left, alike)
-        # points weigh differently in each mode, and what all modes did beside the line would tilt each by another bit
+        # each mode weighs points differently: what all modes did beside the line would change each slope differently
         along = np.where(seen, shifts - course, 0.0)
         square = np.sum(weight * _beside(design, gain, along) ** 2, axis=1)
         floor = np.maximum(floor, square / weight.sum(axis=1))

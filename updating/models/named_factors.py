@@ -33,7 +33,7 @@ def regions_of(spec: Spec, name: str) -> tuple[tuple[int, ...], str]:
     return tuple(i for i, r in enumerate(spec.regions) if region and r.name == region), factor
 
 
-def carried_by(spec: Spec) -> dict[str, str]:
+def carried_masses(spec: Spec) -> dict[str, str]:
     """Return the supports of imported matrices by the name of the doubt in the mass that each carries along."""
     supports = () if spec.imported is None else spec.imported.supports
     return {f"{support.name}.carried": support.name for support in supports}

@@ -14,7 +14,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.base import supports_at
-from updating.models.named_factors import carried_by, regions_of
+from updating.models.named_factors import carried_masses, regions_of
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.models.state import NOMINAL, State
@@ -104,7 +104,7 @@ class Sensitivities:
     @cached_property
     def _supports(self) -> dict[str, str]:
         """The supports of imported matrices, by the name of the doubt in what each carries along."""
-        return carried_by(self.spec)
+        return carried_masses(self.spec)
 
     @cached_property
     def _powers(self) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.registration import registration_doubt, with_registration
 from updating.models.base import FACTORS
-from updating.models.named_factors import carried_by, departure, regions_of, unassigned
+from updating.models.named_factors import carried_masses, departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
 from updating.prediction.bodies import displaced
 from updating.prediction.predict import Predictor
@@ -53,7 +53,7 @@ class Doubted:
     @cached_property
     def _carried(self) -> dict[str, str]:
         """The supports that may carry another mass along than is estimated, by the names of these doubts."""
-        return carried_by(self.predictor.spec)
+        return carried_masses(self.predictor.spec)
 
     def _of_regions(self, name: str, known: set[str]) -> bool:
         """Return whether a name is a factor of regions of the model."""

@@ -28,7 +28,7 @@ def is_significant(found: Search, p_value: float, *, rules: DecisionRules = DEFA
     """Return whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
 
     A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it,
-    if it is not as well explained by setting data aside as that effect does, and nothing else.
+    if setting data aside, without any effect, does not explain them as well.
     Where that fit is one which chance makes seldom, and the empty set stays credible, there is no gap that is sure.
     """
     rows = [row for row in found.compared if row.names]

@@ -178,10 +178,10 @@ class ImportedStructure(Structure):
         )
 
     def _acting(self, elastic: FloatArray) -> FloatArray:
-        """Return the forces (n_dofs, n) at node sets and supports, and of joints whose sides move apart."""
+        """Return the forces (n_dofs, n) at node sets and supports, and of joints in relative motion of their sides."""
         known = self.imported
         acting = [
-            springs @ self._moved_apart(joint, elastic)
+            springs @ self._relative_motions(joint, elastic)
             for joint in known.joints
             for springs in joint.springs
             if springs.nnz
@@ -191,12 +191,12 @@ class ImportedStructure(Structure):
         loads = np.hstack([np.zeros((self.n_dofs, 0)), *acting])
         return np.asarray(loads[:, np.abs(loads).max(axis=0, initial=0.0) > 0])
 
-    def _moved_apart(self, joint: Joint, elastic: FloatArray) -> FloatArray:
-        """Return motions (n_dofs, n) in which the sides of a joint move apart: one as a rigid body.
+    def _relative_motions(self, joint: Joint, elastic: FloatArray) -> FloatArray:
+        """Return relative motions (n_dofs, n) of the sides of a joint: one moves as a rigid body, the other does not.
 
-        A joint that all but opens answers with these; in the lowest modes of the structure as modelled, which stand for
-        them where rows lie at no place, its sides hardly do. Of a bracket with two bolts of four nodes each, one at a
-        hundredth of its stiffness, frequencies are right to 1e-5; with the lowest modes they are 3 % too high.
+        A joint that is nearly open answers with these. In the lowest modes of the model, which are taken
+        where rows lie at no place, there is hardly any relative motion. Of a bracket with two bolts of four nodes each,
+        one at a hundredth of its stiffness, frequencies are right to 1e-5; with the lowest modes they are 3 % too high.
         """
         places, order = self.imported.places, self.n_dofs
         moves = rigid_motions(places, order, joint.centre)
