@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy import ndimage, stats
+from scipy import stats
 
 from acquisition.arrays import ComplexArray, FloatArray, row_blocks, squared
 from acquisition.frfs.frf import FrfSet
@@ -49,8 +49,23 @@ def usual(ratio: FloatArray) -> FloatArray:
 
 
 def local_mean(power: FloatArray, window: int) -> FloatArray:
-    """Average along lines over ``window`` lines, mirrored at the ends, shape as ``power``."""
-    return np.asarray(ndimage.uniform_filter1d(power, window, axis=1, mode="reflect"))
+    """Average along lines over ``window`` lines, mirrored at the ends, shape as ``power``.
+
+    Each window is the end of one block and the start of the next, of which sums are at hand. A running sum
+    would subtract: beside a value 1e18 times as large, its mean of small positive values may be negative.
+    """
+    n_lines = power.shape[1]
+    before = window // 2
+    blocks = -(-(n_lines + window - 1) // window)
+    mirrored = np.pad(power, ((0, 0), (before, blocks * window - n_lines - before)), mode="symmetric")
+    block = mirrored.reshape(len(power), blocks, window)
+    start, end = np.cumsum(block, axis=2), np.cumsum(block[:, :, ::-1], axis=2)[:, :, ::-1]
+    # A window that begins with a block is that whole block: nothing of a next one is added.
+    start[:, :, -1] = 0.0
+    total = start.reshape(len(power), -1)[:, window - 1 : window - 1 + n_lines]
+    total += end.reshape(len(power), -1)[:, :n_lines]
+    total /= window
+    return np.asarray(total)
 
 
 def scatter(residual: ComplexArray) -> FloatArray:

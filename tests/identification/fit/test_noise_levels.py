@@ -113,3 +113,19 @@ def test_coherence_alone_is_a_relative_weight(rng):
     plain = identify(replace(clean, values=values))
     assert np.abs((model.modal.frequency - truth.hertz) / model.modal.frequency_sigma).max() < 4
     np.testing.assert_allclose(model.modal.frequency_sigma, plain.modal.frequency_sigma, rtol=0.25)
+
+
+@pytest.mark.parametrize(("n_lines", "window"), [(100, 48), (48, 48), (801, 66), (5, 5), (9, 2), (10, 1)])
+def test_a_local_mean_is_that_of_its_window(n_lines, window):
+    power = np.random.default_rng(0).random((3, n_lines))
+    mirrored = np.concatenate([power[:, ::-1], power, power[:, ::-1]], axis=1)
+    first = n_lines - window // 2 + np.arange(n_lines)
+    expected = np.stack([mirrored[:, i : i + window].mean(axis=1) for i in first], axis=1)
+    np.testing.assert_allclose(levels.local_mean(power, window), expected, rtol=1e-13)
+
+
+def test_a_local_mean_of_small_values_does_not_feel_large_ones_elsewhere():
+    # Without noise, what a line says of common noise changes by 1e18 along the band.
+    power = np.full((1, 400), 3.0)
+    power[0, 100:150] = 1e22
+    np.testing.assert_allclose(levels.local_mean(power, 48)[0, 200:], 3.0, rtol=1e-13)
