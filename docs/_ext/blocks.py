@@ -84,6 +84,19 @@ MEASURED = re.compile(r" (%|sigma)")
 """What follows a whole number that is no count."""
 
 
+STATED = re.compile(r"(Cause|Where|Sure):")
+"""Lines of an answer on which per cents are probabilities."""
+
+
+SAMPLED = Decimal(5)
+"""How far apart two probabilities are that print the same result [%]: a hundred samples leave the logarithm of each
+evidence off by a tenth, and other samples are drawn where rounding differs."""
+
+
+MORE = re.compile(r"or \d+ more")
+"""How many less probable sets a line leaves out: those of a per cent come and go with their probabilities."""
+
+
 PRECISE = 5
 """From so many digits on a number is a measurement's, and has its last digit [-]."""
 
@@ -93,15 +106,23 @@ def alike(written: str, printed: str) -> bool:
 
     So much another processor's rounding moves: a search that rests a step earlier, a sample more or less. Whole numbers
     are counts, and equal, but those of per cent and sigma. Widths of columns follow from the numbers and do not matter.
+    Probabilities of an answer are sampled.
     """
     if written == printed:
         return True
+    written, printed = MORE.sub("or more", written), MORE.sub("or more", printed)
+    sampled = STATED.match(written) is not None
     words = [NUMBER.sub("#", line).split() for line in (written, printed)]
     numbers = [list(NUMBER.finditer(line)) for line in (written, printed)]
     return words[0] == words[1] and all(
         _near(a.group(), b.group(), counted=MEASURED.match(written, a.end()) is None)
+        or (sampled and written.startswith(" %", a.end()) and _as_probable(a.group(), b.group()))
         for a, b in zip(*numbers, strict=True)
     )
+
+
+def _as_probable(a: str, b: str) -> bool:
+    return abs(Decimal(a) - Decimal(b)) <= SAMPLED
 
 
 def _near(a: str, b: str, *, counted: bool) -> bool:

@@ -27,7 +27,14 @@ def blocks() -> ModuleType:
     ("written", "printed", "alike"),
     [
         ("Sure:    95 % probable", "Sure:    94 % probable", True),
-        ("Sure:    95 % probable", "Sure:    90 % probable", False),
+        ("Sure:    95 % probable", "Sure:    89 % probable", False),
+        (
+            "Cause:   E (75 %) or shear (2.4 %) or 6 more",
+            "Cause:   E (78 %) or shear (1.9 %) or 5 more",
+            True,
+        ),
+        ("Cause:   E (75 %) or shear (2.4 %)", "Cause:   E (75 %) or taper (2.4 %)", False),
+        ("Closes:  27.7 % -> 0.37 %", "Closes:  26.0 % -> 0.37 %", False),
         ("separates E by 4 sigma", "separates E by 3 sigma", True),
         ("separates E by 4 sigma", "separates density by 4 sigma", False),
         ("75 hits, 0 left out", "74 hits, 0 left out", False),
