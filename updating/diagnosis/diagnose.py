@@ -16,6 +16,7 @@ from updating.diagnosis.decision import SearchedCase, diagnosis_of
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.search import search
+from updating.diagnosis.search.unmeasured import with_unmeasured_modes
 from updating.effects import LIBRARY, Effect, hypotheses_of
 from updating.models.state import State
 from updating.nominal import accepted_additions, predictor_of
@@ -178,7 +179,13 @@ def _searched(
     steps: Steps,
 ) -> SearchedCase:
     own = {effect.name: effect for one in problem.specimens for effect in hypotheses_of(one.predictor.spec)}
-    found = search(problem, _examined(problem, library, own, accepted), steps)
+    effects = _examined(problem, library, own, accepted)
+    found = search(problem, effects, steps)
+    steps.begin("looking for modes that the test has not")
+    anew = with_unmeasured_modes(problem, found, effects)
+    if anew is not None:
+        problem, note = anew
+        warnings, found = [*warnings, note], search(problem, effects, steps)
     return SearchedCase(problem, titles, found, own, tuple(warnings))
 
 
