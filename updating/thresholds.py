@@ -25,6 +25,11 @@ IMPORTED_MESH_DOUBT = 0.005
 it cannot be refined here. Twelve quadratic bricks along a plate with ribs, or an angle bolted to one, are 0.1 to 0.5 %
 from sixteen. Doubled: one mode of a fine mesh must change by a tenth of a per cent to be seen, not by half of that."""
 
+REGION_MESH_DOUBT = 0.02
+"""How much stiffer a region is than the structure because it is meshed with bricks, relative (1 sigma) [-]: few of them
+through a bend lock. Twelve quadratic bricks along an angle leave its leg 2 % stiffer than sixteen. Doubled: a region
+has to soften by 8, not by 4 %, to be seen without a baseline."""
+
 UNREACHED_MODE_DOUBT = 0.01
 """Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others, relative [-].
 Judged: what tolerances of one per cent leave. Doubled: such a mode counts a quarter as much."""

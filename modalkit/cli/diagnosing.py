@@ -132,13 +132,19 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
 
 
 def _explanations(diagnosis: Diagnosis) -> pd.DataFrame:
-    """Return the most probable rows of the ranking, before them that of no cause where this is the answer."""
+    """Return the most probable rows of the ranking, with that of no cause: where this is the answer it is the first."""
     rows = diagnosis.table().head(10).reset_index()
-    if diagnosis.verdict != "none":
+    aside = diagnosis.set_aside
+    data = "" if aside is None else f"without {', '.join(aside.data)}"
+    if diagnosis.verdict == "none":
+        chance = float(f"{diagnosis.p_value:.3g}")
+        first = dict(zip(rows.columns, (NO_CAUSE, without_cause(diagnosis), chance, ""), strict=True))
+        return pd.concat([pd.DataFrame([first]), rows], ignore_index=True)
+    if aside is None or round(aside.probability, 4) == 0.0:
         return rows
-    chance = float(f"{diagnosis.p_value:.3g}")
-    first = dict(zip(rows.columns, (NO_CAUSE, without_cause(diagnosis), chance, ""), strict=True))
-    return pd.concat([pd.DataFrame([first]), rows], ignore_index=True)
+    own = dict(zip(rows.columns, ("no cause", aside.probability, float("nan"), data), strict=True))
+    rows = pd.concat([rows, pd.DataFrame([own])], ignore_index=True)
+    return rows.sort_values("probability", ascending=False, kind="stable", ignore_index=True)
 
 
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:

@@ -116,6 +116,7 @@ def _with_something_else(rows: list[RankedEntry], other: SomethingElse | None) -
         "parameters": {},
         "plausible": True,
         "fit_p_value": None,
+        "set_aside": [],
     }
     return sorted([*shared, own], key=lambda row: -row["probability"])
 

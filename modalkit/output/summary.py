@@ -110,6 +110,12 @@ def _unknown(diagnosis: Diagnosis) -> str:
     if diagnosis.lacks == "library":
         return f"the gap is real; {first} fits best, but {_of_no_library(diagnosis.something_else)}"
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
+    aside = diagnosis.set_aside
+    if aside is not None:
+        return (
+            f"{first} would explain the gap, but is not {odds} as that no cause is there and some data are worse than "
+            f"stated ({', '.join(aside.data)})"
+        )
     return (
         f"{first} would explain the gap, but is not {odds} as tolerances or noise that are worse than stated"
     )

@@ -15,6 +15,7 @@ from updating.diagnosis.answer.levels import levels
 from updating.diagnosis.answer.remainder import remainder_of
 from updating.diagnosis.answer.result import Diagnosis, Gap, Shortcoming, Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
+from updating.diagnosis.answer.set_aside import most_probable
 from updating.diagnosis.answer.shrink import shrinkage
 from updating.diagnosis.answer.verdict import decide, included, is_significant, rank, shortcoming
 from updating.diagnosis.answer.where import locate
@@ -103,7 +104,7 @@ def diagnosis_of(
         shrink=shrink,
         verdict=verdict,
         sets=sets,
-        ranking=rank(problem, found, rules=rules),
+        ranking=rank(problem, titles, found, rules=rules),
         next_test=propose(problem, found, sets, verdict, certain.mechanisms, separated=rules.separated_sigma),
         warnings=tuple(dict.fromkeys(notes)),
         not_examined=found.not_examined,
@@ -117,6 +118,7 @@ def diagnosis_of(
         level=certain.level,
         mechanisms=certain.mechanisms,
         rules=rules,
+        set_aside=most_probable(problem, titles, found),
     )
 
 

@@ -21,6 +21,9 @@ from updating.thresholds import OUTLIER_PRIOR, OUTLIER_SCALES
 SHAPE = (CHANNELS.index("frf"), CHANNELS.index("phase"))
 """Channels of a mode's shape."""
 
+FREQUENCY = CHANNELS.index("frequency")
+"""Channel of natural frequencies."""
+
 
 @dataclass(frozen=True)
 class Outlier:
@@ -57,6 +60,11 @@ class Outlier:
     def of_shape(self) -> bool:
         """Whether it is the shape of one mode: what changes a structure moves a frequency as well, a slip need not."""
         return self.channel in SHAPE
+
+    @property
+    def of_frequency(self) -> bool:
+        """Whether the frequency of a mode is among it."""
+        return self.mode is not None and self.channel in (None, FREQUENCY)
 
     def about_the_same(self, other: Outlier) -> bool:
         """Return whether another one is of the same data, or tolerance: nothing is worse than thought twice."""

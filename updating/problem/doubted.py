@@ -14,7 +14,7 @@ from updating.models.named_factors import carried_masses, departure, regions_of,
 from updating.models.state import NOMINAL, State
 from updating.prediction.bodies import displaced
 from updating.prediction.predict import Predictor
-from updating.thresholds import CARRIED_DOUBT, STATED_MASS_DOUBT
+from updating.thresholds import CARRIED_DOUBT, REGION_MESH_DOUBT, STATED_MASS_DOUBT
 from updating.tolerances import Tolerances
 
 
@@ -45,7 +45,7 @@ class Doubted:
         known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
         whole = [n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0]
         own = dict.fromkeys(
-            [*self.tolerances.parts, *self.tolerances.bounds, *unassigned(self.predictor.spec)]
+            [*self.tolerances.parts, *self.tolerances.bounds, *unassigned(self.predictor.spec), *self._meshed]
         )
         regional = [n for n in own if self._sigma(n) > 0 and self._of_regions(n, known)]
         return (*whole, *regional, *self.predictor.body_changes, *self._carried)
@@ -54,6 +54,13 @@ class Doubted:
     def _carried(self) -> dict[str, str]:
         """The supports that may carry another mass along than is estimated, by the names of these doubts."""
         return carried_masses(self.predictor.spec)
+
+    @cached_property
+    def _meshed(self) -> tuple[str, ...]:
+        """The stiffness of each region that its mesh of bricks makes doubtful; a baseline took that out."""
+        spec = self.predictor.spec
+        solid = spec.imported is not None and spec.imported.places.solid
+        return tuple(f"{region.name}.E" for region in spec.regions) if solid and not self.corrected else ()
 
     def _of_regions(self, name: str, known: set[str]) -> bool:
         """Return whether a name is a factor of regions of the model."""
@@ -68,7 +75,11 @@ class Doubted:
     def _sigma(self, name: str) -> float:
         if (change := self.predictor.body_changes.get(name)) is not None:
             return STATED_MASS_DOUBT if change.axis is None else self._place_sigma(change.axis, change.at)
-        return CARRIED_DOUBT if name in self._carried else self.tolerances.factor(name)
+        if name in self._carried:
+            return CARRIED_DOUBT
+        if name in self._meshed:
+            return float(np.hypot(self.tolerances.parts.get(name, 0.0), REGION_MESH_DOUBT))
+        return self.tolerances.factor(name)
 
     def _place_sigma(self, axis: int, at: float) -> float:
         """Return the doubt in the place of a body along an axis: its own, and that in where all places lie [m]."""

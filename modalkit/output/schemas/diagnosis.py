@@ -107,6 +107,14 @@ class RankedEntry(TypedDict):
         "chance of a misfit like this or worse if the set is true; null of `something_else` [-]",
         Of("p_value"),
     ]
+    set_aside: Annotated[Sequence[str], "data that it takes to be worse than stated"]
+
+
+class SetAsideEntry(TypedDict):
+    """No cause, but data that are worse than stated."""
+
+    data: Annotated[Sequence[str], "which, most probably"]
+    probability: Annotated[float, "of no cause with data set aside, these or others [-]"]
 
 
 class MechanismSizeEntry(TypedDict):
@@ -182,6 +190,10 @@ class CauseEntry(TypedDict):
         Sequence[Sequence[str]], "the answer: sets that hold 95 %; empty for `unknown` and `none`"
     ]
     ranking: Annotated[Sequence[RankedEntry], "all sets compared, most probable first"]
+    set_aside: Annotated[
+        SetAsideEntry | None,
+        "data that are worse than stated if there is no cause; null where none are taken to be",
+    ]
 
 
 class HeldPointsEntry(TypedDict):

@@ -25,6 +25,7 @@ from updating.diagnosis.search.fit import evaluate
 from updating.diagnosis.search.goodness import p_value
 from updating.problem.candidate import Candidate
 from updating.test_data.measured import Measured
+from updating.thresholds import REGION_MESH_DOUBT
 
 pytestmark = pytest.mark.skipif(not available(), reason="needs CalculiX")
 
@@ -158,3 +159,16 @@ def test_that_the_mesh_is_coarser_than_the_structure_is_no_gap(tmp_path: Path) -
         problem.measured, frequency=problem.measured.frequency * np.where(np.arange(9) == 4, 1.05, 1.0)
     )
     assert p_value(evaluate(replace(problem, measured=beside), Candidate(), np.zeros(0))) < 1e-4
+
+
+@pytest.mark.long
+def test_the_mesh_leaves_the_stiffness_of_each_region_in_doubt(tmp_path: Path) -> None:
+    """An angle of coarse bricks is too stiff where it bends most: in a region, not in each mode by itself."""
+    write_trial(trial("bracket", "lumped_mass"), tmp_path)
+    problem, _ = pose(open_study(tmp_path / "study.toml").case)
+    meshed = [f"{region.name}.E" for region in problem.predictor.spec.regions]
+    assert set(meshed) <= set(problem.names)
+    rows = [problem.names.index(name) for name in meshed]
+    assert problem.sigmas[rows] == pytest.approx(REGION_MESH_DOUBT)
+    corrected = replace(problem.doubted, corrected=True)
+    assert not set(meshed) & set(corrected.names)

@@ -70,3 +70,20 @@ def test_a_half_without_any_mode_that_has_a_partner_is_no_half() -> None:
     one = replace(one, mode=np.append(found.mode[lowest][:-1], -1), nuisance=found.nuisance[lowest])
     assert "the lower and the upper modes" not in [name for name, *_ in _halves(one)]
     assert "the lower and the upper modes" in [name for name, *_ in _halves(found)]
+
+
+@pytest.mark.parametrize("point", [2, 4])
+def test_a_channel_has_one_gain_though_half_of_the_points_are_without_it(point: int) -> None:
+    """Shapes are in units of what all points have together, so that all of them change with one."""
+    rng = np.random.default_rng(5)
+    test = struck(specimen(rng), rng)
+    louder = np.where(test.hit == point, 1.8, 1.0)[:, None]
+    test = replace(test, constants=test.constants * louder, constants_sigma=test.constants_sigma * louder)
+    problem, _ = pose(case_of(test, BEAM))
+    gain = LIBRARY["channel_gain"]
+    form = next(f for f in problem.forms(gain) if tuple(f.values["points"]) == (test.nodes[point],))
+    found = explain(problem, Candidate((gain,), chosen=(form,)))
+    assert problem.values(found.candidate, found.best.coordinates)["channel_gain.gain"] == pytest.approx(
+        1.8, rel=0.1
+    )
+    assert splits(problem, found) == ()

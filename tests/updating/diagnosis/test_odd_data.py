@@ -137,3 +137,22 @@ def test_no_cause_sets_a_shape_aside_that_nothing_alone_may_not() -> None:
     assert set(weighed) == {(), ("calibration_gain",)}
     assert weighed[()].candidate.outliers == weighed[("calibration_gain",)].candidate.outliers
     assert weighed[()].log_evidence > nothing.log_evidence
+
+
+@pytest.mark.parametrize("seed", [3, 17])
+def test_data_that_are_worse_than_stated_are_an_explanation_of_their_own(seed: int) -> None:
+    """One frequency of a beam that has nothing else: no cause explains it better than that it was read wrong."""
+    rng = np.random.default_rng(seed)
+    test = struck(specimen(rng), rng)
+    third = np.arange(len(test.frequency)) == 2
+    found = diagnose(
+        case_of(replace(test, frequency=test.frequency * np.where(third, 1.03, 1.0)), BEAM), library=SOME
+    )
+    assert found.verdict in ("unknown", "none")
+    assert found.set_aside is not None
+    assert found.set_aside.data == ("mode 3 frequency",)
+    assert found.set_aside.probability > 0.5
+    assert found.set_aside.probability + sum(row.probability for row in found.ranking) <= 1 + 1e-9
+    without = [row for row in found.ranking if row.set_aside]
+    assert without
+    assert diagnosis_document(found)["cause"]["set_aside"]["data"] == ["mode 3 frequency"]

@@ -10,9 +10,8 @@ from scipy.stats import chi2
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.closing import Metric
 from updating.diagnosis.answer.rules import DEFAULT_RULES
-from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.gaussian import marginal
+from updating.likelihood.gaussian import gaussian
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import DAMPING_REPEATABILITY, UNSTATED_DAMPING_NOISE
 
@@ -27,22 +26,25 @@ TOLD_AS: dict[str, Metric] = {
 """The metric of each channel: phases are of the FRFs; the dependence on force and on time has no error of its own."""
 
 
-def metric_of(point: Point, *, second: float = DEFAULT_RULES.second_metric) -> Metric:
+def metric_of(comparison: Comparison, scale: float, *, second: float = DEFAULT_RULES.second_metric) -> Metric:
     """Return the metric of the channel that carries the gap, or ``combined`` where two carry it.
 
     Parameters
     ----------
-    point : Point
-        The nominal model with its tolerances.
+    comparison : Comparison
+        Of the nominal model, with the noise that the best explanation leaves: with a noise of its own, which may be
+        many times as large, no shape would surprise.
+    scale : float
+        That of the noise of the shapes [-].
     second : float
         The rule ``second_metric`` [-].
     """
     surprise = {}
     for name in TOLD_AS:
-        keep = point.comparison.of(name)
+        keep = comparison.of(name)
         if keep.any():
-            part = marginal(point.comparison, keep)
-            surprise[name] = float(chi2.logsf(part.chi2, part.count))
+            left = gaussian(comparison, (scale,), keep).fit.chi2
+            surprise[name] = float(chi2.logsf(left[0, 0, 0], int(keep.sum())))
     order = sorted(surprise, key=lambda name: surprise[name])
     if not order:
         return "frequency"

@@ -68,6 +68,8 @@ class Ranked(Displayed):
         What the best form fixes of each effect: the points, the region, which parameters act.
     other_forms : tuple of tuple of mapping
         The same of the other probable forms, a mirrored region for instance, the best first.
+    set_aside : tuple of str
+        Data that it takes to be worse than stated.
     """
 
     effects: tuple[str, ...]
@@ -78,12 +80,19 @@ class Ranked(Displayed):
     p_value: float
     forms: tuple[Mapping[str, Any], ...] = ()
     other_forms: tuple[tuple[Mapping[str, Any], ...], ...] = ()
+    set_aside: tuple[str, ...] = ()
 
     def of(self, effect: str) -> dict[str, ParameterEstimate]:
         """Return the parameters of one of the effects by their own names."""
         start = f"{effect}."
         return {n.removeprefix(start): e for n, e in self.parameters.items() if n.startswith(start)}
 
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """Its parameters with their sizes, and without which data it fits."""
+        sizes = [f"{n} = {e}" for n, e in self.parameters.items()]
+        return (*sizes, *[f"without {', '.join(self.set_aside)}"] * bool(self.set_aside))
+
     def _headline(self) -> str:
-        sizes = "; ".join(f"{n} = {e}" for n, e in self.parameters.items())
+        sizes = "; ".join(self.stated)
         return f"{' + '.join(self.effects) or '(tolerances alone)'}, {probability(self.probability)}: {sizes}"

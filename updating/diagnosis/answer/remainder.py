@@ -10,20 +10,10 @@ import numpy as np
 from acquisition.arrays import BoolArray
 from updating.diagnosis.answer.closing import Remainder, Shrink
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
+from updating.diagnosis.answer.set_aside import of_channel, of_mode
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.likelihood.cells import cells
-from updating.likelihood.comparison import CHANNELS
-
-KINDS = {
-    "frequency": "frequency",
-    "damping": "damping",
-    "frf": "shape",
-    "phase": "phase",
-    "level": "level",
-    "trend": "trend",
-}
-"""What the data of each channel are of a mode."""
 
 
 def remainder_of(
@@ -73,15 +63,6 @@ def _name_of(problem: DiagnosisProblem, titles: Sequence[str], best: Explanation
     comparison = best.best.comparison
     first = int(np.flatnonzero(rows)[0])
     modes = np.unique(comparison.mode[rows & comparison.of_pairs])
-    which, mode, source = 0, int(modes[0]), int(comparison.source[first])
-    for specimen in problem.specimens:
-        count, channels = len(specimen.measured.frequency), len(specimen.measured.seen)
-        if mode < count:
-            break
-        which, mode, source = which + 1, mode - count, source - channels
-    title = f"{titles[which]}: " if len(problem.specimens) > 1 else ""
     if len(modes) == 1:
-        return f"{title}mode {mode + 1} {KINDS[CHANNELS[int(comparison.channel[first])]]}"
-    test = problem.specimens[which].measured
-    roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
-    return f"{title}point {test.nodes[int(roving[source])]} in all modes"
+        return of_mode(problem, titles, int(modes[0]), int(comparison.channel[first]))
+    return of_channel(problem, titles, int(comparison.source[first]))

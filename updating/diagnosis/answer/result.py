@@ -18,6 +18,7 @@ from updating.diagnosis.answer.located import Where
 from updating.diagnosis.answer.mechanism import Level, Mechanism
 from updating.diagnosis.answer.ranked import Ranked
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
+from updating.diagnosis.answer.set_aside import SetAside
 from updating.diagnosis.search.search import Searched
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
@@ -131,6 +132,8 @@ class Diagnosis(Shown):
         What the most probable set, or a cause in no library, does: all at the same time, the leading one first.
     rules : DecisionRules
         What the answer was decided by.
+    set_aside : SetAside, optional
+        Data that are worse than stated if there is no cause; None where no set takes any to be.
     """
 
     title: str
@@ -155,6 +158,7 @@ class Diagnosis(Shown):
     level: Level | None = None
     mechanisms: tuple[Mechanism, ...] = ()
     rules: DecisionRules = DEFAULT_RULES
+    set_aside: SetAside | None = None
 
     @property
     def suspected(self) -> Ranked | None:
@@ -188,7 +192,7 @@ class Diagnosis(Shown):
         columns = {
             "probability": [round(r.probability, 4) for r in self.ranking],
             "fits (p)": [float(f"{r.p_value:.3g}") for r in self.ranking],
-            "parameters": [", ".join(f"{n} = {e}" for n, e in r.parameters.items()) for r in self.ranking],
+            "parameters": [", ".join(r.stated) for r in self.ranking],
         }
         names = [" + ".join(r.effects) or "(tolerances alone)" for r in self.ranking]
         return pd.DataFrame(columns, index=pd.Index(names, name="effects"))

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.closing import Closed, HeldPoints, Metric, Shrink
 from updating.diagnosis.answer.metric import Squares, metric_of, noise_squares, squares
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
@@ -44,13 +42,11 @@ def shrinkage(
     rules : DecisionRules
         What the answer is decided by.
     """
-    outliers = best.candidate.outliers  # what the best takes to be worse than stated counts nowhere
-    own = nothing.best.comparison
-    metric = metric_of(
-        replace(nothing.best, comparison=with_outliers(own, outliers)), second=rules.second_metric
-    )
+    outliers, left = best.candidate.outliers, best.best.marginal
     plain = problem.at(Candidate(), np.zeros(0))
-    odd = np.any([outlier.data(plain) for outlier in outliers], axis=0) if outliers else None
+    start = with_outliers(problem.at(Candidate(), np.zeros(0), nothing.best.about), outliers)
+    metric = metric_of(left.settle(start), left.scale, second=rules.second_metric)
+    odd = _unexplained(best, plain)
 
     def counted(residual: FloatArray) -> Squares:
         return squares(residual, plain, metric, odd=odd)
@@ -77,6 +73,17 @@ def shrinkage(
     )
 
 
+def _unexplained(best: Explanation, plain: Comparison) -> BoolArray | None:
+    """Return which data count nowhere, (n,): what the best takes to be worse than stated, and does not explain either.
+
+    A channel whose gain is off may be noisier, too: its gap is closed where half of its square is.
+    """
+    groups = [outlier.data(plain) for outlier in best.candidate.outliers]
+    squares_left = best.best.left_over**2
+    open_ = [rows for rows in groups if squares_left[rows].sum() > 0.5 * np.sum(plain.residual[rows] ** 2)]
+    return np.any(open_, axis=0) if open_ else None
+
+
 def _stretch(nothing: Explanation) -> float:
     """Return by how much the tolerances alone would have to be off to explain the data best [sigma]."""
     shift = nothing.best.marginal.shift[nothing.best.comparison.doubts]
@@ -86,8 +93,11 @@ def _stretch(nothing: Explanation) -> float:
 def _points(
     problem: DiagnosisProblem, nothing: Explanation, best: Explanation, plain: Comparison, metric: Metric
 ) -> HeldPoints | None:
-    """Return the errors of the modal constants at points held out; None where another metric measures the gap."""
-    if metric not in {"frf", "combined"}:
+    """Return the errors of the modal constants at points held out; None where another metric measures the gap.
+
+    What a channel does at its point no other point shows: such a cause is not tried so.
+    """
+    if metric not in {"frf", "combined"} or any(effect.labels for effect in best.candidate.effects):
         return None
     after, alone = points_held_out(problem, best), points_held_out(problem, nothing)
     if after is None or alone is None:

@@ -13,6 +13,7 @@ from updating.diagnosis.answer.quantiles import quantiles
 from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
 from updating.diagnosis.answer.result import Shortcoming, Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
+from updating.diagnosis.answer.set_aside import names_of
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
@@ -250,7 +251,7 @@ def _determined(row: Compared, rules: DecisionRules) -> int:
 
 def included(found: Search) -> dict[str, float]:
     """Return the probability of each effect compared that it is among the causes [-]."""
-    total = sum(row.probability for row in found.compared)
+    total = sum(row.probability for row in (*found.compared, *found.set_aside))
     names = dict.fromkeys(name for row in found.compared for name in row.names)
     return {
         name: sum(row.probability for row in found.compared if name in row.names) / total for name in names
@@ -258,11 +259,15 @@ def included(found: Search) -> dict[str, float]:
 
 
 def rank(
-    problem: DiagnosisProblem, found: Search, *, rules: DecisionRules = DEFAULT_RULES
+    problem: DiagnosisProblem,
+    titles: Sequence[str],
+    found: Search,
+    *,
+    rules: DecisionRules = DEFAULT_RULES,
 ) -> tuple[Ranked, ...]:
     """Turn what was compared into rows of the ranking, the empty set left out."""
     rows = [row for row in found.compared if row.names]
-    total = sum(row.probability for row in found.compared)
+    total = sum(row.probability for row in (*found.compared, *found.set_aside))
     return tuple(
         Ranked(
             effects=row.names,
@@ -278,6 +283,7 @@ def rank(
             p_value=row.p_value,
             forms=_fixed(row.explanation),
             other_forms=tuple(_fixed(one) for one, _ in row.forms[1:] if one.names == row.names),
+            set_aside=names_of(problem, titles, row.explanation.candidate.outliers),
         )
         for row in rows
     )

@@ -45,7 +45,7 @@ def something_else(problem: DiagnosisProblem, found: Search, rules: DecisionRule
     if not isinstance(problem, SpecimenProblem) or not problem.predictor.spec.regions or not sets:
         return None
     prior = logit(rules.something_else_prior)
-    own = [r.explanation.log_evidence + log_prior(len(r.names), found.examined) for r in sets]
+    own = [row.log_score for row in (*sets, *found.set_aside)]
     first = beside(problem, sets[0].explanation)
     alone = [(one, beside(problem, one)) for one in _without_effects(problem, found)]
     scores = [one.log_evidence + field.log_factor for one, field in alone]

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.special import logsumexp
 
+from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain, finish, single_cause
 from updating.diagnosis.search.fewer import with_parts
@@ -69,6 +70,8 @@ class Compared:
         How its probability is shared among the regions that its forms name; a form that names two gives each half [-].
     without : float
         Log evidence of no effect at all with the same data set aside; of none where none are [-].
+    log_score : float
+        Logarithm of its evidence times its prior; of what explains no more than data set aside do, none [-].
     forms : tuple of (Explanation, float)
         The same effects in the forms that hold a place's worth of its probability, with their shares of it, the best
         first [-].
@@ -81,6 +84,7 @@ class Compared:
     extreme: tuple[str, ...] = ()
     regions: Mapping[str, float] = field(default_factory=dict)
     without: float = -np.inf
+    log_score: float = -np.inf
     forms: tuple[tuple[Explanation, float], ...] = ()
 
     @property
@@ -122,6 +126,9 @@ class Search:
         Whether every set was compared on the model's theory and on the fuller one.
     examined, repeated : int
         How many effects the sets are made of, and how many of them a set may have twice.
+    set_aside : tuple of Compared
+        No effect with the data set aside that sets of effects set aside, most probable first: data that are worse than
+        stated are an explanation, too.
     """
 
     nothing: Explanation
@@ -130,6 +137,7 @@ class Search:
     both: bool = False
     examined: int = 0
     repeated: int = 0
+    set_aside: tuple[Compared, ...] = ()
 
     @property
     def searched(self) -> tuple[Searched, ...]:
@@ -191,7 +199,8 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect], steps: Steps = 
     if both and not _beneath(problem) and len(problem.specimens) == 1:
         found = _finished(problem, with_theory_named(problem, found, effects))
     repeated = sum(effect.repeats_on(problem.predictor) for effect in effects)
-    return Search(nothing, _merged(problem, _compare(found)), obstacles, both, len(effects), repeated)
+    compared, set_aside = _merged(problem, found)
+    return Search(nothing, compared, obstacles, both, len(effects), repeated, set_aside)
 
 
 def _with_odd(
@@ -254,47 +263,82 @@ def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Expla
     return finished
 
 
-def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compared, ...]:
-    """Add up the forms of each set of effects; the most probable form stands for them."""
+def _merged(
+    problem: DiagnosisProblem, found: Sequence[Explanation]
+) -> tuple[tuple[Compared, ...], tuple[Compared, ...]]:
+    """Add up the forms of each set of effects; the most probable form stands for them.
+
+    A set that sets data aside is compared with no effect that sets the same aside. Where it is not the more probable it
+    explains nothing, and has no share; the data that are worse than stated have it.
+    """
     forms: dict[tuple[str, ...], list[Compared]] = {}
-    for row in rows:
+    for row in _compare(found):
         forms.setdefault(tuple(sorted(row.names)), []).append(row)
     merged = []
-    without: dict[tuple[bool, tuple[Outlier, ...]], float] = {}  # of no effect, with the same data set aside
+    without: dict[tuple[bool, tuple[Outlier, ...]], Explanation] = {}
     for own in forms.values():
         top = max(own, key=lambda row: row.probability)
         total = float(logsumexp([row.explanation.log_evidence for row in own]))
         fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
-        probability = sum(row.probability for row in own)
-        matters = probability > NEGLIGIBLE_PROBABILITY
-        extreme = _extreme(problem, top.explanation) if matters else ()
-        set_aside = top.explanation.candidate.fuller, top.explanation.candidate.outliers
-        if set_aside not in without:
-            without[set_aside] = _without_effects(problem, *set_aside)
-        stated = max(row.as_stated for row in own)
-        whole = replace(top.explanation, log_evidence=total)
-        shared = _by_form(own, probability)
-        regions = _by_region(own, total)
+        candidate, least = top.explanation.candidate, -np.inf
+        if candidate.outliers and top.names:
+            bare = Candidate(fuller=candidate.fuller, outliers=candidate.outliers)
+            key = bare.fuller, bare.outliers
+            if key not in without:
+                without[key] = explain(problem, bare, laplace_only=True)
+            least = without[key].log_evidence
+        explains = total > least or not top.names
+        probability = sum(row.probability for row in own) if explains else 0.0
+        extreme = _extreme(problem, top.explanation) if probability > NEGLIGIBLE_PROBABILITY else ()
         merged.append(
             Compared(
-                explanation=whole,
+                explanation=replace(top.explanation, log_evidence=total),
                 probability=probability,
                 p_value=fits,
-                as_stated=stated,
+                as_stated=max(row.as_stated for row in own),
                 extreme=extreme,
-                regions=regions,
-                without=without[set_aside],
-                forms=shared,
+                regions=_by_region(own, total),
+                without=least,
+                log_score=total + log_prior(len(top.names), _examined(found)) if explains else -np.inf,
+                forms=_by_form(own, sum(row.probability for row in own)),
             )
         )
-    return tuple(sorted(merged, key=lambda row: -row.probability))
+    return _shared(merged, _aside(found, list(without.values())))
 
 
-def _without_effects(problem: DiagnosisProblem, fuller: bool, outliers: tuple[Outlier, ...]) -> float:
-    """Return the log evidence of no effect with the data set aside that a set sets aside: what explains may be that."""
-    if not outliers:
-        return -np.inf
-    return explain(problem, Candidate(fuller=fuller, outliers=outliers), laplace_only=True).log_evidence
+def _aside(found: Sequence[Explanation], without: list[Explanation]) -> list[Compared]:
+    """Return no effect with data set aside, with its share beside all that was found.
+
+    An odd shape, channel or damping ratio is a slip of a test in which nothing is hidden. A frequency that belongs
+    elsewhere is a gap by itself: as likely, beforehand, as any one cause.
+    """
+    examined, level = _examined(found), logsumexp(_scores(found))
+    known = {e.candidate.outliers for e in found if not e.names}
+    rows = []
+    for one in without:
+        if one.candidate.outliers in known:
+            continue
+        gap = any(outlier.of_frequency for outlier in one.candidate.outliers)
+        score = one.log_evidence + log_prior(int(gap), examined)
+        share = float(np.exp(score - level))
+        rows.append(
+            Compared(explanation=one, probability=share, p_value=one.p_value, as_stated=0.0, log_score=score)
+        )
+    return rows
+
+
+def _shared(rows: list[Compared], aside: list[Compared]) -> tuple[tuple[Compared, ...], tuple[Compared, ...]]:
+    """Return rows of two kinds, each the most probable first, with shares that add up to one."""
+    total = sum(row.probability for row in (*rows, *aside))
+    first, second = (
+        tuple(sorted((replace(row, probability=row.probability / total) for row in part), key=_improbable))
+        for part in (rows, aside)
+    )
+    return first, second
+
+
+def _improbable(row: Compared) -> float:
+    return -row.probability
 
 
 def _by_form(own: list[Compared], total: float) -> tuple[tuple[Explanation, float], ...]:
@@ -326,9 +370,18 @@ def _extreme(problem: DiagnosisProblem, explanation: Explanation) -> tuple[str, 
     return tuple(found)
 
 
-def _compare(found: list[Explanation]) -> list[Compared]:
-    examined = len({name for e in found for name in e.names})
-    score = np.array([e.log_evidence + log_prior(len(e.names), examined) for e in found])
+def _examined(found: Sequence[Explanation]) -> int:
+    return len({name for e in found for name in e.names})
+
+
+def _scores(found: Sequence[Explanation]) -> FloatArray:
+    """Return the logarithm of evidence and prior of each [-]."""
+    examined = _examined(found)
+    return np.array([e.log_evidence + log_prior(len(e.names), examined) for e in found])
+
+
+def _compare(found: Sequence[Explanation]) -> list[Compared]:
+    score = _scores(found)
     probability = np.exp(score - logsumexp(score))
     stated = [0.0 if e.candidate.outliers else e.p_value for e in found]
     return [
