@@ -60,5 +60,5 @@ class _OnDemand(ModuleType):
         super().__setattr__(name, value)
 
     def __dir__(self) -> list[str]:
-        """Return what is loaded and what can be."""
-        return sorted({*self.__dict__, *self.__dict__["_modules_of_names"]})
+        """Return the public names, loaded or not."""
+        return sorted({*self.__dict__.get("__all__", ()), *self.__dict__["_modules_of_names"]})

@@ -62,13 +62,17 @@ def body_changes(reduced: Reduced, spec: Spec) -> dict[str, BodyChange]:
     return changes
 
 
-def displaced(reduced: Reduced, spec: Spec, by: Mapping[str, float]) -> tuple[FloatArray, ...]:
+def displaced(
+    reduced: Reduced, spec: Spec, bodies: Mapping[str, BodyChange], by: Mapping[str, float]
+) -> tuple[FloatArray, ...]:
     """Return what the mass matrix gains where bodies are heavier and elsewhere, (r, r) each [kg in w].
 
     Parameters
     ----------
     reduced, spec
         As in :func:`body_changes`.
+    bodies : mapping of str to BodyChange
+        What that returns.
     by : mapping of str to float
         Change of the logarithm of each mass [-] and of its place [m], by the names of :func:`body_changes`; a place
         stays on the structure.
@@ -83,7 +87,8 @@ def displaced(reduced: Reduced, spec: Spec, by: Mapping[str, float]) -> tuple[Fl
         at = np.array(body.at[: spec.dim], dtype=float)
         size = np.array([spec.length, spec.width][: spec.dim])
         there = np.clip(at + step, np.minimum(at, 0.0), np.maximum(at, size))
-        before, after = (_inertia(body, *_motion(reduced, spec, place)) for place in (at, there))
+        before = bodies[f"mass {rank}"].mass
+        after = _inertia(body, *_motion(reduced, spec, there)) if step.any() else before
         gains.append(factor * after - before)
     return tuple(gains)
 
@@ -98,5 +103,6 @@ def _motion(
 
 def _inertia(body: PointMass, moves: FloatArray, turns: Mapping[str, FloatArray]) -> FloatArray:
     """Return the mass matrix of a body, its rotary inertia included, (r, r) [kg in w]."""
-    rotary = sum((np.outer(turn, turn) for turn in turns.values()), np.zeros((len(moves),) * 2))
-    return np.asarray(body.mass * np.outer(moves, moves) + body.inertia * rotary)
+    rows = np.stack([moves, *turns.values()])
+    weights = np.array([body.mass, *(body.inertia for _ in turns)])
+    return np.asarray((rows.T * weights) @ rows)

@@ -117,6 +117,6 @@ class Doubted:
         bodies = stage.body_changes
         others = bodies.keys() | self._carried.keys()
         factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in others}
-        masses = displaced(stage.reduced, stage.spec, moved)
+        masses = displaced(stage.reduced, stage.spec, bodies, moved)
         carried = {support: 1.0 + moved[name] for name, support in self._carried.items()}
         return departure(self.predictor.spec, factors).plus(State(mass=masses, carried=carried))

@@ -11,6 +11,10 @@ from typing import Any
 from acquisition.errors import StudyError
 from modalkit.papers.real.case import Source
 
+_MATRICES = ("stiffness", "mass_matrix", "mass", "nodes", "deck", "stiffness_parts", "mass_parts")
+_FILES = {"test": ("files", "modes"), "baseline": ("files", "modes"), "model": _MATRICES}
+"""Keys of each table of a study that name files. A mass of the model may be a list of bodies instead."""
+
 _HEADER = re.compile(r"^\s*\[\[?\s*([\w.]+)\s*\]\]?")
 
 
@@ -70,13 +74,14 @@ def without_tables(text: str, drop: tuple[str, ...]) -> str:
 
 
 def data_files(document: dict[str, Any]) -> list[str]:
-    """Return the files of data that a study names, those of the baseline too."""
-    names = []
-    for table in ("test", "baseline"):
+    """Return the files that a study names: of the test and the baseline, and the model's matrices or deck."""
+    names: list[Any] = []
+    for table in ("test", "baseline", "model"):
         part = document.get(table, {})
-        names += list(part.get("files", []))
-        names += [part["modes"]] if "modes" in part else []
-    return names
+        for key in _FILES[table]:
+            stated = part.get(key, [])
+            names += [stated] if isinstance(stated, str) else stated
+    return list(dict.fromkeys(name for name in names if isinstance(name, str)))
 
 
 def _untitled(text: str, number: int) -> str:

@@ -1,12 +1,14 @@
 """All cases: first with the whole library, then with the true effects taken out of it."""
 
 from modalkit.papers.real.case import Case
+from modalkit.papers.real.changed import CHANGED
 from modalkit.papers.real.measured import MEASURED_CASES, MEASURED_LEFT_OUT
 from modalkit.papers.real.paper_a import PAPER_A, PAPER_A_LEFT_OUT
 from modalkit.papers.real.paper_b import PAPER_B, PAPER_B_LEFT_OUT
 
 CASES: tuple[Case, ...] = (
     *MEASURED_CASES,
+    *CHANGED,
     *PAPER_A,
     *PAPER_B,
     *MEASURED_LEFT_OUT,

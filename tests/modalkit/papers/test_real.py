@@ -319,3 +319,29 @@ def test_the_command_judges_every_published_case(tmp_path: Path, capsys: pytest.
     printed = capsys.readouterr().out
     assert "How answers are graded" in printed
     assert "plate in water" in printed
+
+
+def test_the_matrices_of_a_model_go_with_it(tmp_path: Path) -> None:
+    """Bodies that a model lists under the same key as a file of masses are none."""
+    for name in ("K.mtx", "m1.mtx", "nodes.csv", "after.csv", "before.csv"):
+        (tmp_path / name).write_text("1 1\n", encoding="utf-8")
+    text = (
+        'title = "Frame, storey 2 softer"\n[test]\nmodes = "after.csv"\n[baseline]\nmodes = "before.csv"\n[model]\n'
+        'type = "matrices"\nstiffness = "K.mtx"\nnodes = "nodes.csv"\nmass_parts = ["m1.mtx"]\n'
+        "[[model.mass]]\nat = [0.1]\nmass = 0.2\n"
+    )
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    folder = tmp_path / "copy"
+    folder.mkdir()
+    study = write_anonymous(Source(Path("study.toml")), tmp_path, folder, 0)
+    written = tomllib.loads(study.read_text(encoding="utf-8"))
+    assert written["title"] == "Test 0"
+    assert sorted(data_files(written)) == sorted(p.name for p in folder.iterdir() if p.suffix != ".toml")
+    assert len(data_files(written)) == 5
+    assert not {"K.mtx", "after.csv"} & set(data_files(written))
+
+
+def test_changed_structures_have_names_of_their_own() -> None:
+    names = [one.name for one in CASES]
+    assert len(set(names)) == len(names)
+    assert all(one.source and one.known for one in CASES)

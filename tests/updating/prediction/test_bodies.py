@@ -92,7 +92,9 @@ def test_a_body_far_from_its_place_is_another_model_on_the_structure(away: float
     """Also where it would lie beside the plate: its place is then the edge."""
     predictor = Predictor(carrying(PLATE, middle(PLATE)), blank(points_of(PLATE)))
     x, y = middle(PLATE)
-    gain = displaced(predictor.reduced, predictor.spec, {"mass 1 x": away, "mass 1": 0.1})
+    gain = displaced(
+        predictor.reduced, predictor.spec, predictor.body_changes, {"mass 1 x": away, "mass 1": 0.1}
+    )
     found = predictor.predict(State(mass=gain), count=MODES).frequency
     at = (min(max(x + away, 0.0), PLATE.length), y)
     other = at_rest(carrying(PLATE, at, MASS * np.exp(0.1))).frequency
