@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass
 
 from modalkit.blind.answer import Answer, Estimate
+from modalkit.output.schemas.diagnosis import SOMETHING_ELSE
 from modalkit.papers.real.case import Case, Fact
 
 RULES = """\
 * right: it names a set of effects that is true; or a class that holds a true set and else only sets that
-  these data cannot separate from it;
+  these data cannot separate from it; that a cause in no library is possible, too, counts neither way;
 * partly: it answers `unknown` where the library has the effect; or names a part of the truth only; or holds a
   true set beside a false one; or is right but for a known number outside its 95 % interval or a place it does
   not point to;
@@ -68,11 +69,16 @@ def _of_nothing(answer: Answer) -> Judgement:
     return Judgement("wrong", "a false alarm")
 
 
+def _of_library(answer: Answer) -> list[frozenset[str]]:
+    """Return the sets of an answer but that of a cause in no library."""
+    return [one for one in answer.sets if one != frozenset({SOMETHING_ELSE})]
+
+
 def _of_left_out(case: Case, answer: Answer) -> Judgement:
     if answer.verdict == "unknown":
         return Judgement("right", "unknown")
-    stated = [s for s in answer.sets if s in case.stands_in]
-    if stated and len(stated) == len(answer.sets):
+    sets = _of_library(answer)
+    if sets and all(s in case.stands_in for s in sets):
         return Judgement("right", "the same under another name")
     if any(stand_in <= s for s in answer.sets for stand_in in case.stands_in):
         return Judgement("partly", "a stand-in beside others, or with something added")
@@ -80,13 +86,14 @@ def _of_left_out(case: Case, answer: Answer) -> Judgement:
 
 
 def _of_effects(case: Case, answer: Answer) -> Judgement:
-    true = [s for s in answer.sets if s in case.accepted]
+    sets = _of_library(answer)
+    true = [s for s in sets if s in case.accepted]
     if not true:
         known = frozenset().union(*case.accepted)
-        if any(s & known for s in answer.sets):
+        if any(s & known for s in sets):
             return Judgement("partly", "a part of the truth")
         return Judgement("wrong", "a cause that it is not")
-    if any(s not in case.accepted and s not in case.equivalent for s in answer.sets):
+    if any(s not in case.accepted and s not in case.equivalent for s in sets):
         return Judgement("partly", "the truth beside something else")
     return _of_numbers(case, answer)
 

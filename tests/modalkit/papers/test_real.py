@@ -102,6 +102,8 @@ def document(verdict: str, *named: str, value: float = 998.0) -> dict[str, Any]:
         (answer("class", "fluid_added_mass", "density"), "right"),
         (answer("class", "fluid_added_mass", "density", "clamp_rotation"), "partly"),
         (answer("class", "density", "clamp_rotation"), "wrong"),
+        (answer("class", "fluid_added_mass", "density", "something_else"), "right"),
+        (answer("class", "clamp_rotation", "something_else"), "wrong"),
         (answer("unknown", "density"), "partly"),
         (answer("none"), "wrong"),
     ],

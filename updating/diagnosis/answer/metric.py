@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.closing import Metric
-from updating.diagnosis.answer.rules import DEFAULT_RULES
+from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import gaussian
 from updating.problem.specimen import SpecimenProblem
@@ -26,8 +26,10 @@ TOLD_AS: dict[str, Metric] = {
 """The metric of each channel: phases are of the FRFs; the dependence on force and on time has no error of its own."""
 
 
-def metric_of(comparison: Comparison, scale: float, *, second: float = DEFAULT_RULES.second_metric) -> Metric:
+def metric_of(comparison: Comparison, scale: float, *, rules: DecisionRules = DEFAULT_RULES) -> Metric:
     """Return the metric of the channel that carries the gap, or ``combined`` where two carry it.
+
+    Frequencies come first, if they alone show a gap: of all errors theirs is the plainest.
 
     Parameters
     ----------
@@ -36,8 +38,8 @@ def metric_of(comparison: Comparison, scale: float, *, second: float = DEFAULT_R
         many times as large, no shape would surprise.
     scale : float
         That of the noise of the shapes [-].
-    second : float
-        The rule ``second_metric`` [-].
+    rules : DecisionRules
+        What the answer is decided by: what chance shows a gap, and how much another channel carries of it.
     """
     surprise = {}
     for name in TOLD_AS:
@@ -46,9 +48,9 @@ def metric_of(comparison: Comparison, scale: float, *, second: float = DEFAULT_R
             left = gaussian(comparison, (scale,), keep).fit.chi2
             surprise[name] = float(chi2.logsf(left[0, 0, 0], int(keep.sum())))
     order = sorted(surprise, key=lambda name: surprise[name])
-    if not order:
+    if not order or surprise.get("frequency", 0.0) < np.log(rules.significant_gap):
         return "frequency"
-    stated = [TOLD_AS[name] for name in order if surprise[name] <= second * surprise[order[0]]]
+    stated = [TOLD_AS[name] for name in order if surprise[name] <= rules.second_metric * surprise[order[0]]]
     return stated[0] if len(set(stated)) == 1 else "combined"
 
 
