@@ -113,8 +113,8 @@ def _unknown(diagnosis: Diagnosis) -> str:
     aside = diagnosis.set_aside
     if aside is not None:
         return (
-            f"{first} would explain the gap, but is not {odds} as that no cause is there and some data are worse than "
-            f"stated ({', '.join(aside.data)})"
+            f"{first} would explain the gap, but is not {odds} as no cause with data that are worse than stated "
+            f"({', '.join(aside.data)})"
         )
     return (
         f"{first} would explain the gap, but is not {odds} as tolerances or noise that are worse than stated"

@@ -49,7 +49,10 @@ def answer(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "unknown":
         content = f": {diagnosis.mechanism}" if diagnosis.mechanism else ""
-        return f"A real gap ({p_value(diagnosis.p_value)}), and nothing in the library of effects explains it{content}"
+        gap = f"A real gap ({p_value(diagnosis.p_value)})"
+        if diagnosis.lacks == "evidence" and not diagnosis.mechanisms:
+            return f"{gap}, and no cause is clearly more probable than data worse than stated"
+        return f"{gap}, and nothing in the library of effects explains it{content}"
     if diagnosis.verdict == "named":
         where, value = _detail(diagnosis)
         return f"{_capital(phrase(diagnosis.sets[0]))}{where} explains the gap{value}"

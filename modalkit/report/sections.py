@@ -8,7 +8,7 @@ import pandas as pd
 
 from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
-from modalkit.output.how_far import without_cause
+from modalkit.output.how_far import by_chance, without_cause, without_data
 from modalkit.output.names import in_words, sizes, zone_in_words
 from modalkit.output.summary import NO_CAUSE, answers, of_no_library_text, searched_text, separates
 from modalkit.output.words import METRICS, short
@@ -193,9 +193,14 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     marked = [r.effects in diagnosis.sets for r in shown]
     none = diagnosis.verdict == "none"
     first = 0 if none else len(cells)
-    alone = without_cause(diagnosis)
+    alone = without_cause(diagnosis) if none else by_chance(diagnosis)
     cells.insert(first, [NO_CAUSE, alone, diagnosis.p_value, _why_not_alone(diagnosis), "", ""])
     marked.insert(first, none)
+    aside = diagnosis.set_aside
+    if aside is not None and aside.probability >= LEAST and not none:
+        why = "rejected: no cause, but data that are worse than stated"
+        cells.append(["no cause", aside.probability, aside.p_value, why, without_data(aside.data), ""])
+        marked.append(False)
     statement = {
         "named": "The shaded row is the answer.",
         "class": "The shaded rows are the answer: one of them, these data cannot show which.",

@@ -115,6 +115,11 @@ class SetAsideEntry(TypedDict):
 
     data: Annotated[Sequence[str], "which, most probably"]
     probability: Annotated[float, "of no cause with data set aside, these or others [-]"]
+    fit_p_value: Annotated[
+        float | None,
+        "chance of a misfit like that of all other data or worse; null if undefined [-]",
+        Of("p_value"),
+    ]
 
 
 class MechanismSizeEntry(TypedDict):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from acquisition.display import counted
 from acquisition.quantities import bare_p, probability
+from modalkit.output.how_far import by_chance, without_cause, without_data
 from modalkit.output.words import METRICS, parameters, short
 from modalkit.views.chart import Axis, Chart, Series
 from updating import Diagnosis
@@ -31,8 +32,11 @@ def explanations(diagnosis: Diagnosis) -> list[Explanation]:
     """Return the rows: those of the answer, then the rest by probability, with the tolerances among them."""
     chosen = set(diagnosis.sets)
     none = diagnosis.verdict == "none"
-    alone = max(0.0, 1.0 - sum(row.probability for row in diagnosis.ranking))
+    aside = diagnosis.set_aside
+    alone = without_cause(diagnosis) if none else by_chance(diagnosis)
     rows = [Explanation("tolerances and noise alone", "", alone, none)]
+    if aside is not None and not none:
+        rows.append(Explanation("no cause", without_data(aside.data), aside.probability, False))
     for row in diagnosis.ranking:
         detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
         if row.p_value < diagnosis.rules.rejected_fit and not none:
@@ -94,7 +98,7 @@ def _title(diagnosis: Diagnosis) -> str:
     rest = [r for r in diagnosis.ranking if r.effects not in diagnosis.sets]
     behind = f"; the next, {short(rest[0].effects)}, {probability(rest[0].probability)}" if rest else ""
     if diagnosis.verdict == "none":
-        alone = max(0.0, 1.0 - sum(r.probability for r in diagnosis.ranking))
+        alone = without_cause(diagnosis)
         return f"Tolerances and noise alone hold {probability(alone)} of the probability"
     if diagnosis.verdict == "unknown" or not chosen:
         return f"No explanation of {len(diagnosis.ranking)} that were compared is the answer"

@@ -33,10 +33,13 @@ class SetAside:
         Which data.
     probability : float
         Of no cause with data set aside, these or others [-].
+    p_value : float
+        How well all other data fit [-].
     """
 
     data: tuple[str, ...]
     probability: float
+    p_value: float
 
 
 def most_probable(problem: DiagnosisProblem, titles: Sequence[str], found: Search) -> SetAside | None:
@@ -53,9 +56,9 @@ def most_probable(problem: DiagnosisProblem, titles: Sequence[str], found: Searc
     """
     if not found.set_aside:
         return None
-    first = found.set_aside[0].explanation.candidate.outliers
-    total = sum(row.probability for row in found.set_aside)
-    return SetAside(names_of(problem, titles, first), float(total))
+    first = found.set_aside[0]
+    total = float(sum(row.probability for row in found.set_aside))
+    return SetAside(names_of(problem, titles, first.explanation.candidate.outliers), total, first.p_value)
 
 
 def names_of(
