@@ -213,7 +213,10 @@ def _ranks_of(
 def _fitted(
     problem: SpecimenProblem, trial: _Trial, examined: int, pattern: Pattern
 ) -> tuple[float, IntArray]:
-    """Return the score of a candidate at the best of its ranks, these found anew where its parameters have moved."""
+    """Return the score of a candidate at the best of its ranks, these found anew where its parameters have moved.
+
+    What does not fit with other ranks either is no reason for them.
+    """
     test = problem.measured
     noise = float(np.sqrt(np.mean((test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2)))
     best, kept = -np.inf, trial.order
@@ -223,7 +226,7 @@ def _fitted(
         one = explain(_ranked(problem, order), trial.candidate, starts=[place], laplace_only=True)
         skipped = int(order[-1] - test.below + 1 - len(order))
         prior = log_prior(len(one.names), examined) - pattern.price * skipped
-        if one.log_evidence + prior > best:
+        if one.p_value >= DOUBTED_FIT and one.log_evidence + prior > best:
             best, kept = one.log_evidence + prior, order
         place = one.best.coordinates
         here = _predicted(problem, trial.candidate, place[None, :])
