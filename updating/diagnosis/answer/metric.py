@@ -26,29 +26,37 @@ TOLD_AS: dict[str, Metric] = {
 """The metric of each channel: phases are of the FRFs; the dependence on force and on time has no error of its own."""
 
 
-def metric_of(comparison: Comparison, scale: float, *, rules: DecisionRules = DEFAULT_RULES) -> Metric:
+def metric_of(
+    nothing: Comparison, left: Comparison, scale: float, *, rules: DecisionRules = DEFAULT_RULES
+) -> Metric:
     """Return the metric of the channel that carries the gap, or ``combined`` where two carry it.
 
-    Frequencies come first, if they alone show a gap: of all errors theirs is the plainest.
+    Shapes come last. With a noise of their own, which may be many times as large, they surprise nobody, and with that
+    which an explanation leaves they do with every change of the structure: they carry what no other channel shows.
 
     Parameters
     ----------
-    comparison : Comparison
-        Of the nominal model, with the noise that the best explanation leaves: with a noise of its own, which may be
-        many times as large, no shape would surprise.
+    nothing : Comparison
+        Of the nominal model, its doubts at the sizes that are most probable without a cause.
+    left : Comparison
+        The same with the noise that the best explanation leaves.
     scale : float
         That of the noise of the shapes [-].
     rules : DecisionRules
         What the answer is decided by: what chance shows a gap, and how much another channel carries of it.
     """
     surprise = {}
-    for name in TOLD_AS:
-        keep = comparison.of(name)
+    for name, metric in TOLD_AS.items():
+        one, own = (left, scale) if metric == "frf" else (nothing, 1.0)
+        keep = one.of(name)
         if keep.any():
-            left = gaussian(comparison, (scale,), keep).fit.chi2
-            surprise[name] = float(chi2.logsf(left[0, 0, 0], int(keep.sum())))
+            misfit = gaussian(one, (own,), keep).fit.chi2
+            surprise[name] = float(chi2.logsf(misfit[0, 0, 0], int(keep.sum())))
+    others = {name: value for name, value in surprise.items() if TOLD_AS[name] != "frf"}
+    if min(others.values(), default=0.0) < np.log(rules.significant_gap):
+        surprise = others
     order = sorted(surprise, key=lambda name: surprise[name])
-    if not order or surprise.get("frequency", 0.0) < np.log(rules.significant_gap):
+    if not order:
         return "frequency"
     stated = [TOLD_AS[name] for name in order if surprise[name] <= rules.second_metric * surprise[order[0]]]
     return stated[0] if len(set(stated)) == 1 else "combined"

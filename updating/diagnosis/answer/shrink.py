@@ -45,7 +45,8 @@ def shrinkage(
     outliers, left = best.candidate.outliers, best.best.marginal
     plain = problem.at(Candidate(), np.zeros(0))
     start = with_outliers(problem.at(Candidate(), np.zeros(0), nothing.best.about), outliers)
-    metric = metric_of(left.settle(start), left.scale, rules=rules)
+    own = with_outliers(nothing.best.comparison, outliers)
+    metric = metric_of(own, left.settle(start), left.scale, rules=rules)
     odd = _unexplained(best, plain)
 
     def counted(residual: FloatArray) -> Squares:
