@@ -16,7 +16,7 @@ from updating.diagnosis.decision import SearchedCase, diagnosis_of
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.search import search
-from updating.diagnosis.search.unmeasured import with_unmeasured_modes
+from updating.diagnosis.search.unmeasured import fits, with_unmeasured_modes
 from updating.effects import LIBRARY, Effect, hypotheses_of
 from updating.models.state import State
 from updating.nominal import accepted_additions, predictor_of
@@ -184,8 +184,9 @@ def _searched(
     steps.begin("looking for modes that the test has not")
     anew = with_unmeasured_modes(problem, found, effects)
     if anew is not None:
-        problem, note = anew
-        warnings, found = [*warnings, note], search(problem, effects, steps)
+        again = search(anew[0], effects, steps)
+        if fits(again):  # what does not fit with other pairs either is no reason for them
+            problem, found, warnings = anew[0], again, [*warnings, anew[1]]
     return SearchedCase(problem, titles, found, own, tuple(warnings))
 
 

@@ -95,7 +95,7 @@ def with_unmeasured_modes(
         or problem.baseline is not None
     ):
         return None
-    if problem.measured.partners is not None or found.compared[0].as_stated >= DOUBTED_FIT:
+    if problem.measured.partners is not None or fits(found):
         return None
     effects = examine(problem, library)[0]
     level = max(
@@ -107,6 +107,11 @@ def with_unmeasured_modes(
         if score > best:
             best, order = score, ranks
     return None if order is problem.order else (_ranked(problem, order), _note(problem, order))
+
+
+def fits(found: Search) -> bool:
+    """Return whether the most probable explanation fits, no data set aside."""
+    return found.compared[0].as_stated >= DOUBTED_FIT
 
 
 def ranks(
@@ -190,13 +195,17 @@ def _sampled(problem: SpecimenProblem, candidate: Candidate, pattern: Pattern) -
 
 
 def _predicted(problem: SpecimenProblem, candidate: Candidate, places: FloatArray) -> FloatArray:
-    """Return ln f of the model at some parameters, (s, m), nan where a model has fewer modes [-]."""
-    least = problem.measured.below + len(problem.measured.frequency)
+    """Return ln f of the model at some parameters, (s, m), nan where a model has fewer modes [-].
+
+    So many are compared that a test may lack half as many as it has.
+    """
+    count = len(problem.measured.frequency)
+    most = problem.measured.below + count + count // 2
     found = []
     for place in places:
         (state,) = problem.place(candidate, place)
-        frequency = problem.predictor.predict(state, at_least=least + least // 2).frequency
-        found.append(np.log(np.sort(frequency)))
+        frequency = problem.predictor.predict(state, at_least=most).frequency
+        found.append(np.log(np.sort(frequency)[:most]))
     whole = np.full((len(found), max(len(one) for one in found)), np.nan)
     for row, one in zip(whole, found, strict=True):
         row[: len(one)] = one
@@ -213,10 +222,7 @@ def _ranks_of(
 def _fitted(
     problem: SpecimenProblem, trial: _Trial, examined: int, pattern: Pattern
 ) -> tuple[float, IntArray]:
-    """Return the score of a candidate at the best of its ranks, these found anew where its parameters have moved.
-
-    What does not fit with other ranks either is no reason for them.
-    """
+    """Return the score of a candidate at the best of its ranks, these found anew where its parameters have moved."""
     test = problem.measured
     noise = float(np.sqrt(np.mean((test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2)))
     best, kept = -np.inf, trial.order
@@ -226,7 +232,7 @@ def _fitted(
         one = explain(_ranked(problem, order), trial.candidate, starts=[place], laplace_only=True)
         skipped = int(order[-1] - test.below + 1 - len(order))
         prior = log_prior(len(one.names), examined) - pattern.price * skipped
-        if one.p_value >= DOUBTED_FIT and one.log_evidence + prior > best:
+        if one.log_evidence + prior > best:
             best, kept = one.log_evidence + prior, order
         place = one.best.coordinates
         here = _predicted(problem, trial.candidate, place[None, :])
