@@ -197,10 +197,10 @@ def _sampled(problem: SpecimenProblem, candidate: Candidate, pattern: Pattern) -
 def _predicted(problem: SpecimenProblem, candidate: Candidate, places: FloatArray) -> FloatArray:
     """Return ln f of the model at some parameters, (s, m), nan where a model has fewer modes [-].
 
-    So many are compared that a test may lack half as many as it has.
+    So many are compared that a test may lack as many as it has.
     """
     count = len(problem.measured.frequency)
-    most = problem.measured.below + count + count // 2
+    most = problem.measured.below + 2 * count
     found = []
     for place in places:
         (state,) = problem.place(candidate, place)
