@@ -37,10 +37,11 @@ from modalkit.workflow.case import open_study
 from updating.diagnosis.answer.rules import DEFAULT_RULES
 from updating.diagnosis.answer.verdict import rejected
 from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.compared import Compared, Search
 from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.goodness import p_values
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.search import Compared, Search, search
+from updating.diagnosis.search.search import search
 from updating.effects import LIBRARY
 from updating.likelihood.comparison import CHANNELS
 from updating.problem.candidate import Candidate

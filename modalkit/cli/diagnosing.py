@@ -25,7 +25,7 @@ from modalkit.cli.progress import working
 from modalkit.cli.reporting import now, report_wanted, save_report, this_command
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.documents import diagnosis_document
-from modalkit.output.how_far import without_cause, without_data
+from modalkit.output.how_far import without_cause
 from modalkit.output.library import effects_document, effects_table
 from modalkit.output.schemas.effects import EffectEntry
 from modalkit.output.summary import NO_CAUSE, of_no_library_text, searched_text, separates, summary_text
@@ -141,8 +141,8 @@ def _explanations(diagnosis: Diagnosis) -> pd.DataFrame:
         return pd.concat([pd.DataFrame([first]), rows], ignore_index=True)
     if aside is None or round(aside.probability, 4) == 0.0:
         return rows
-    fits, data = float(f"{aside.p_value:.3g}"), without_data(aside.data)
-    own = dict(zip(rows.columns, ("no cause", aside.probability, fits, data), strict=True))
+    cells = ("no cause", aside.probability, float(f"{aside.p_value:.3g}"), str(aside))
+    own = dict(zip(rows.columns, cells, strict=True))
     rows = pd.concat([rows, pd.DataFrame([own])], ignore_index=True)
     return rows.sort_values("probability", ascending=False, kind="stable", ignore_index=True)
 

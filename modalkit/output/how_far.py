@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from acquisition.quantities import p_value, percent, probability
 from updating import Diagnosis
@@ -112,11 +111,6 @@ def by_chance(diagnosis: Diagnosis) -> float:
     """Return the probability that tolerances and noise alone make the gap, no data set aside [-]."""
     aside = diagnosis.set_aside
     return max(0.0, without_cause(diagnosis) - (0.0 if aside is None else aside.probability))
-
-
-def without_data(data: Sequence[str]) -> str:
-    """State which data are set aside."""
-    return f"without {', '.join(data)}"
 
 
 def _left_out(diagnosis: Diagnosis) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition.quantities import number, place, probability
 from modalkit.output.forms import numbers_a_form
-from modalkit.output.how_far import SHOWN, closes, deviating, sure
+from modalkit.output.how_far import SHOWN, by_chance, closes, deviating, sure
 from modalkit.output.mechanism import content_text, shared_text
 from modalkit.output.names import is_numbered, owners
 from updating import Diagnosis
@@ -110,15 +110,10 @@ def _unknown(diagnosis: Diagnosis) -> str:
     if diagnosis.lacks == "library":
         return f"the gap is real; {first} fits best, but {_of_no_library(diagnosis.something_else)}"
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
-    aside = diagnosis.set_aside
-    if aside is not None:
-        return (
-            f"{first} would explain the gap, but is not {odds} as no cause with data that are worse than stated "
-            f"({', '.join(aside.data)})"
-        )
-    return (
-        f"{first} would explain the gap, but is not {odds} as tolerances or noise that are worse than stated"
-    )
+    aside, rival = diagnosis.set_aside, "tolerances or noise that are worse than stated"
+    if aside is not None and aside.probability > by_chance(diagnosis):
+        rival = f"no cause with data that are worse than stated ({', '.join(aside.data)})"
+    return f"{first} would explain the gap, but is not {odds} as {rival}"
 
 
 def _of_no_library(other: SomethingElse | None) -> str:

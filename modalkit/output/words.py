@@ -51,7 +51,7 @@ def answer(diagnosis: Diagnosis) -> str:
         content = f": {diagnosis.mechanism}" if diagnosis.mechanism else ""
         gap = f"A real gap ({p_value(diagnosis.p_value)})"
         if diagnosis.lacks == "evidence" and not diagnosis.mechanisms:
-            return f"{gap}, and no cause is clearly more probable than data worse than stated"
+            return f"{gap}, and no cause is clearly more probable than tolerances or data worse than stated"
         return f"{gap}, and nothing in the library of effects explains it{content}"
     if diagnosis.verdict == "named":
         where, value = _detail(diagnosis)

@@ -8,7 +8,7 @@ import pandas as pd
 
 from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
-from modalkit.output.how_far import by_chance, without_cause, without_data
+from modalkit.output.how_far import by_chance, without_cause
 from modalkit.output.names import in_words, sizes, zone_in_words
 from modalkit.output.summary import NO_CAUSE, answers, of_no_library_text, searched_text, separates
 from modalkit.output.words import METRICS, short
@@ -199,7 +199,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     aside = diagnosis.set_aside
     if aside is not None and aside.probability >= LEAST and not none:
         why = "rejected: no cause, but data that are worse than stated"
-        cells.append(["no cause", aside.probability, aside.p_value, why, without_data(aside.data), ""])
+        cells.append(["no cause", aside.probability, aside.p_value, why, str(aside), ""])
         marked.append(False)
     statement = {
         "named": "The shaded row is the answer.",

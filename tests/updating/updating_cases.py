@@ -165,6 +165,20 @@ def blank(
     )
 
 
+def of_frequencies(frequency: np.ndarray, sigma: float) -> Measured:
+    """A table of frequencies [Hz], each known to so much of itself [-], without damping and shapes."""
+    unknown, none = np.full(len(frequency), np.nan), np.zeros((0, len(frequency)))
+    return replace(
+        blank(np.zeros(0), shapes_only=True),
+        frequency=frequency,
+        frequency_sigma=sigma * frequency,
+        damping=unknown,
+        damping_sigma=unknown,
+        constants=none,
+        constants_sigma=none,
+    )
+
+
 def observed(
     frequency: np.ndarray,
     damping: np.ndarray,

@@ -24,9 +24,9 @@ from updating.diagnosis.next_test import propose
 from updating.diagnosis.notes import on_fit, on_rules, on_search
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
-from updating.diagnosis.search.search import Search
 from updating.effects import Effect
 from updating.prediction.assignment import frac_of_constants
 from updating.prediction.matching import mac_of_constants
@@ -83,16 +83,15 @@ def diagnosis_of(
     significant = is_significant(found, found.empty.p_value, rules=rules)
     steps.begin("predicting modes held out")
     shrink = _shrink(problem, found, rng, rules, significant=significant)
-    stated = _leader(found) if significant else found.empty.explanation
-    left = remainder_of(problem, titles, stated, shrink, rules=rules)
+    left = remainder_of(problem, titles, _stated(found, significant=significant), shrink, rules=rules)
     steps.begin("comparing with a cause outside the library")
     other = something_else(problem, found, rules) if significant else None
     verdict, sets, lacks, fit_notes = _decided(
         problem, found, other, shrink.closed, rules, significant=significant, left=left.significant
     )
-    here, part = on_one(problem, found)
-    where = locate(here, part, verdict=verdict, whole=found, rules=rules)
-    certain = levels(here, part, where, verdict, sets, other, whole=found, rules=rules)
+    one = on_one(problem, found)
+    where = locate(*one, verdict=verdict, whole=found, rules=rules)
+    certain = levels(*one, where, verdict, sets, other, whole=found, rules=rules)
     steps.begin("choosing the next test")
     notes = (*searched.warnings, *on_rules(rules), *on_search(problem, found, sets), *fit_notes)
     return Diagnosis(
@@ -125,6 +124,11 @@ def diagnosis_of(
 def _leader(found: Search) -> Explanation:
     """Return the most probable set of effects, and no effect where none was compared."""
     return next((row.explanation for row in found.compared if row.names), found.nothing)
+
+
+def _stated(found: Search, *, significant: bool) -> Explanation:
+    """Return what the answer rests on: the most probable set, and no effect where there is no gap."""
+    return _leader(found) if significant else found.empty.explanation
 
 
 def _comparable(problem: DiagnosisProblem) -> bool:

@@ -8,8 +8,8 @@ from updating.diagnosis.answer.consistency import Split
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.search import Search
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction
 from updating.thresholds import ENOUGH_SAMPLES, NEGLIGIBLE_PROBABILITY
 

@@ -78,8 +78,13 @@ class Doubted:
         if name in self._carried:
             return CARRIED_DOUBT
         if name in self._meshed:
-            return float(np.hypot(self.tolerances.parts.get(name, 0.0), REGION_MESH_DOUBT))
+            return float(np.hypot(self._stated(name), REGION_MESH_DOUBT))
         return self.tolerances.factor(name)
+
+    def _stated(self, name: str) -> float:
+        """Return what the study states of one region by itself; what it states of all is a doubt of the whole [-]."""
+        own = {*self.tolerances.parts, *self.tolerances.bounds}
+        return self.tolerances.factor(name) if name in own else 0.0
 
     def _place_sigma(self, axis: int, at: float) -> float:
         """Return the doubt in the place of a body along an axis: its own, and that in where all places lie [m]."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from acquisition.display import counted
 from acquisition.quantities import bare_p, probability
-from modalkit.output.how_far import by_chance, without_cause, without_data
+from modalkit.output.how_far import by_chance, without_cause
 from modalkit.output.words import METRICS, parameters, short
 from modalkit.views.chart import Axis, Chart, Series
 from updating import Diagnosis
@@ -36,7 +36,7 @@ def explanations(diagnosis: Diagnosis) -> list[Explanation]:
     alone = without_cause(diagnosis) if none else by_chance(diagnosis)
     rows = [Explanation("tolerances and noise alone", "", alone, none)]
     if aside is not None and not none:
-        rows.append(Explanation("no cause", without_data(aside.data), aside.probability, False))
+        rows.append(Explanation("no cause", str(aside), aside.probability, False))
     for row in diagnosis.ranking:
         detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
         if row.p_value < diagnosis.rules.rejected_fit and not none:

@@ -18,7 +18,7 @@ from updating.diagnosis.answer.closing import Closed, Remainder, Shrink
 from updating.diagnosis.answer.located import Where, Zone
 from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
 from updating.diagnosis.answer.result import Gap, NextTest, Shortcoming
-from updating.diagnosis.search.search import Searched
+from updating.diagnosis.search.compared import Searched
 
 HEADS = ["Cause", "Where", "Closes", "Sure", "Next"]
 FREE_END = (0.376, 0.0, 0.0)

@@ -170,5 +170,9 @@ def test_the_mesh_leaves_the_stiffness_of_each_region_in_doubt(tmp_path: Path) -
     assert set(meshed) <= set(problem.names)
     rows = [problem.names.index(name) for name in meshed]
     assert problem.sigmas[rows] == pytest.approx(REGION_MESH_DOUBT)
+    bounded = replace(problem.doubted, tolerances=replace(problem.tolerances, bounds={meshed[0]: (0.5, 2.0)}))
+    assert bounded.sigmas[bounded.names.index(meshed[0])] == pytest.approx(
+        np.log(4.0) / np.sqrt(12.0), rel=2e-3
+    )
     corrected = replace(problem.doubted, corrected=True)
     assert not set(meshed) & set(corrected.names)

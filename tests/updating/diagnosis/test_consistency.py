@@ -10,7 +10,8 @@ from updating_cases import BEAM as FINE
 from updating_cases import case_of, specimen, struck
 
 from updating import LIBRARY, Measured, diagnose
-from updating.diagnosis.answer.consistency import Split, _halves, splits
+from updating.diagnosis.answer import consistency
+from updating.diagnosis.answer.consistency import Split, _halves, _Part, splits
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.models.state import NOMINAL
@@ -72,18 +73,15 @@ def test_a_half_without_any_mode_that_has_a_partner_is_no_half() -> None:
     assert "the lower and the upper modes" in [name for name, *_ in _halves(found)]
 
 
-@pytest.mark.parametrize("point", [2, 4])
-def test_a_channel_has_one_gain_though_half_of_the_points_are_without_it(point: int) -> None:
-    """Shapes are in units of what all points have together, so that all of them change with one."""
-    rng = np.random.default_rng(5)
-    test = struck(specimen(rng), rng)
-    louder = np.where(test.hit == point, 1.8, 1.0)[:, None]
-    test = replace(test, constants=test.constants * louder, constants_sigma=test.constants_sigma * louder)
-    problem, _ = pose(case_of(test, BEAM))
-    gain = LIBRARY["channel_gain"]
-    form = next(f for f in problem.forms(gain) if tuple(f.values["points"]) == (test.nodes[point],))
-    found = explain(problem, Candidate((gain,), chosen=(form,)))
-    assert problem.values(found.candidate, found.best.coordinates)["channel_gain.gain"] == pytest.approx(
-        1.8, rel=0.1
-    )
-    assert splits(problem, found) == ()
+@pytest.mark.parametrize(("spread", "apart"), [(0.004, True), (0.05, False)])
+def test_a_part_that_knows_next_to_nothing_of_a_parameter_is_no_test_of_it(
+    monkeypatch: pytest.MonkeyPatch, spread: float, apart: bool
+) -> None:
+    """Both sizes are ten deviations apart; the second part has a sixteenth of the information, or 4e-4."""
+    problem, _ = pose(case_of(softer(3), BEAM))
+    found = explain(problem, SOFTER)
+    sizes = ((0.4, 0.001), (0.4 + 10 * np.hypot(0.001, spread), spread))
+    parts = [_Part(np.array([at]), np.array([[own**2]])) for at, own in sizes]
+    taken = iter(parts * 2)
+    monkeypatch.setattr(consistency, "_part", lambda *_: next(taken))
+    assert bool(splits(problem, found)) is apart

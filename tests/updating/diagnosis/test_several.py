@@ -18,8 +18,8 @@ from updating.diagnosis.decision import on_one
 from updating.diagnosis.diagnose import diagnose_together, pose
 from updating.diagnosis.problem.recent import Recent
 from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.compared import Compared, Search
 from updating.diagnosis.search.evidence import explain
-from updating.diagnosis.search.search import Compared, Search
 from updating.effects import LIBRARY
 from updating.effects.base import Variant
 from updating.likelihood.comparison import Comparison

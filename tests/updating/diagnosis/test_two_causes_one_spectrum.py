@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, STEEL, ExactBeam, blank, case_of
+from updating_cases import BEAM, STEEL, ExactBeam, case_of, of_frequencies
 
 from updating import LIBRARY, Measured, diagnose
 
@@ -32,17 +32,7 @@ def sprung() -> ExactBeam:
 
 
 def frequencies_alone() -> Measured:
-    frequency = tipped().frequencies(5)
-    unknown = np.full(5, np.nan)
-    return replace(
-        blank(np.zeros(0), shapes_only=True),
-        frequency=frequency,
-        frequency_sigma=1e-4 * frequency,
-        damping=unknown,
-        damping_sigma=unknown,
-        constants=np.zeros((0, 5)),
-        constants_sigma=np.zeros((0, 5)),
-    )
+    return of_frequencies(tipped().frequencies(5), 1e-4)
 
 
 def test_the_two_beams_have_the_same_frequencies() -> None:

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, blank, case_of
+from updating_cases import BEAM, case_of, of_frequencies
 
 from updating import Case, Predictor, diagnose
 from updating.diagnosis.search.unmeasured import ranks
@@ -40,19 +40,9 @@ def test_a_model_with_too_few_modes_has_no_ranks():
 def case(state: State, missing: list[int]) -> Case:
     """A table of six frequencies, some of the lower ones not in it."""
     beam = replace(BEAM.with_elements(20), regions=())
-    nothing = replace(blank(np.zeros(0), shapes_only=True), repeatability=1e-3)
-    true = Predictor(beam, nothing).predict(state, count=9).frequency
+    true = Predictor(beam, of_frequencies(np.ones(1), 1e-3)).predict(state, count=9).frequency
     kept = np.delete(true, missing)[:6] * np.exp(1e-3 * np.random.default_rng(3).standard_normal(6))
-    unknown = np.full(6, np.nan)
-    test = replace(
-        nothing,
-        frequency=kept,
-        frequency_sigma=1e-3 * kept,
-        damping=unknown,
-        damping_sigma=unknown,
-        constants=np.zeros((0, 6)),
-        constants_sigma=np.zeros((0, 6)),
-    )
+    test = replace(of_frequencies(kept, 1e-3), repeatability=1e-3)
     return case_of(test, beam)
 
 

@@ -13,8 +13,9 @@ from updating.diagnosis.answer.clusters import clusters
 from updating.diagnosis.answer.contributions import contributions
 from updating.diagnosis.answer.where import acting_together, locate
 from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation, explain
-from updating.diagnosis.search.search import Search, search
+from updating.diagnosis.search.search import search
 from updating.models.state import State
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem

@@ -11,8 +11,8 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.clusters import SEARCHED
 from updating.diagnosis.answer.mechanism import Component, Quantity
+from updating.diagnosis.search.compared import Compared
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.search import Compared
 from updating.effects.base import Effect, Values
 from updating.effects.box import Place
 from updating.effects.mechanism import Channel, Extent, Size

@@ -19,9 +19,6 @@ from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import normal_equations
 from updating.thresholds import REFIT_STEPS, SHORT_STEP, UNSEEN_CURVATURE
 
-POINTS = "one half of the points and the other"
-"""How the data are split by points."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Part:
@@ -68,9 +65,16 @@ class Split:
 
 
 def splits(
-    problem: DiagnosisProblem, explanation: Explanation, *, rules: DecisionRules = DEFAULT_RULES
+    problem: DiagnosisProblem,
+    explanation: Explanation,
+    *,
+    rules: DecisionRules = DEFAULT_RULES,
+    least: float = 0.01,
 ) -> tuple[Split, ...]:
     """Return the parameters that both parts of the data determine and put at different sizes.
+
+    A part that has next to nothing of what is known of a parameter is no test of it: the gain of one channel shows in
+    all others by the common phase alone, a thousandth part of what it is where it acts, and so would any other error.
 
     Parameters
     ----------
@@ -80,6 +84,8 @@ def splits(
         A set of causes at its best.
     rules : DecisionRules
         What the answer is decided by.
+    least : float
+        Least information in one part over that in the other [-].
 
     Returns
     -------
@@ -91,11 +97,10 @@ def splits(
     columns = sensitivities(problem, explanation.candidate, explanation.best)
     names = [name for name, _ in problem.parameters(explanation.candidate)]
     found = []
-    whole = explanation.best.comparison
-    for parts, first, second in _halves(whole):
-        seen = _with_free_levels(whole) if parts == POINTS else whole
-        one, two = (_part(problem, explanation, seen, columns, keep, rules) for keep in (first, second))
-        known = np.maximum(one.spread, two.spread) < rules.determined_spread
+    for parts, first, second in _halves(explanation.best.comparison):
+        one, two = (_part(problem, explanation, columns, keep) for keep in (first, second))
+        most, fewest = np.maximum(one.spread, two.spread), np.minimum(one.spread, two.spread)
+        known = (most < rules.determined_spread) & (fewest**2 >= least * most**2)
         sigma = np.abs(one.coordinates - two.coordinates) / np.hypot(one.spread, two.spread)
         apart = known & (sigma > rules.split_sigma)
         found += [Split(names[i], parts, float(sigma[i])) for i in np.flatnonzero(apart)]
@@ -112,47 +117,18 @@ def _halves(comparison: Comparison) -> list[tuple[str, BoolArray, BoolArray]]:
     if len(sources) > 1:
         odd = np.isin(comparison.source, sources[1::2])
         shapes = comparison.scaled
-        halves.append((POINTS, shapes & ~odd, shapes & odd))
+        halves.append(("one half of the points and the other", shapes & ~odd, shapes & odd))
     pairs = comparison.of_pairs
     return [(name, a, b) for name, a, b in halves if (a & pairs).any() and (b & pairs).any()]
 
 
-def _with_free_levels(comparison: Comparison) -> Comparison:
-    """Return a comparison in which shapes are compared up to a factor for each mode.
-
-    Shapes are in units of their mean square over all points: half of the points would see in it what the others have.
-    """
-    rows = np.flatnonzero(comparison.scaled & comparison.of_pairs)
-    offset = np.zeros(2, dtype=int)
-    whole = []
-    for prediction in comparison.predictions:
-        size = np.sqrt(np.mean(prediction.constants**2, axis=0, keepdims=True))
-        whole.append((offset.copy(), prediction.constants / np.maximum(size, 1e-300)))
-        offset += prediction.constants.shape
-    modes = int(offset[1])
-    levels = np.zeros((len(comparison.residual), modes))
-    for (first_row, first_mode), shapes in whole:
-        source, mode = comparison.source[rows] - first_row, comparison.mode[rows] - first_mode
-        own = (source >= 0) & (source < len(shapes)) & (mode >= 0) & (mode < shapes.shape[1])
-        levels[rows[own], comparison.mode[rows[own]]] = shapes[source[own], mode[own]]
-    return comparison.beside(np.zeros((len(levels), 0)), levels)
-
-
-def _part(
-    problem: DiagnosisProblem,
-    explanation: Explanation,
-    comparison: Comparison,
-    columns: FloatArray,
-    keep: BoolArray,
-    rules: DecisionRules,
-) -> _Part:
-    """Fit the parameters to some of the data: by a linear step where it is short, or where it determines nothing."""
+def _part(problem: DiagnosisProblem, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> _Part:
+    """Fit the parameters to some of the data: by a linear step where it is short."""
     best = explanation.best
     rest = UNSEEN_CURVATURE * np.eye(columns.shape[1])
-    normal, load = normal_equations(comparison, columns, best.marginal.scale, keep)
+    normal, load = normal_equations(best.comparison, columns, best.marginal.scale, keep)
     there = np.clip(best.coordinates + np.linalg.solve(normal + rest, load), 0.0, 1.0)
-    determined = np.sqrt(np.diag(np.linalg.inv(normal + rest))) < rules.determined_spread
-    if determined.any() and np.abs(there - best.coordinates).max() > SHORT_STEP:
+    if np.abs(there - best.coordinates).max() > SHORT_STEP:
         peak = maximise(problem, explanation.candidate, best.coordinates, keep=keep, rounds=REFIT_STEPS)
         there, normal = peak.point.coordinates, peak.normal
     return _Part(there, np.asarray(np.linalg.inv(normal + rest)))

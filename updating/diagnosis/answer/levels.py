@@ -27,7 +27,7 @@ from updating.diagnosis.answer.mechanism import (
 from updating.diagnosis.answer.quantiles import quantiles
 from updating.diagnosis.answer.result import Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
-from updating.diagnosis.search.search import Search
+from updating.diagnosis.search.compared import Search
 from updating.effects.box import Place
 from updating.problem.specimen import SpecimenProblem
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from acquisition.display import Displayed
 from acquisition.quantities import estimate, probability, quantity
+from updating.diagnosis.answer.set_aside import without
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ class Ranked(Displayed):
     def stated(self) -> tuple[str, ...]:
         """Its parameters with their sizes, and without which data it fits."""
         sizes = [f"{n} = {e}" for n, e in self.parameters.items()]
-        return (*sizes, *[f"without {', '.join(self.set_aside)}"] * bool(self.set_aside))
+        return (*sizes, *[without(self.set_aside)] * bool(self.set_aside))
 
     def _headline(self) -> str:
         sizes = "; ".join(self.stated)

@@ -19,7 +19,7 @@ from updating.diagnosis.answer.mechanism import Level, Mechanism
 from updating.diagnosis.answer.ranked import Ranked
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.answer.set_aside import SetAside
-from updating.diagnosis.search.search import Searched
+from updating.diagnosis.search.compared import Searched
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
 

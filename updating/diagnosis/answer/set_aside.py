@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.search import Search
+from updating.diagnosis.search.compared import Search
 from updating.likelihood.comparison import CHANNELS
 from updating.likelihood.outliers import Outlier
 
@@ -40,6 +40,14 @@ class SetAside:
     data: tuple[str, ...]
     probability: float
     p_value: float
+
+    def __str__(self) -> str:
+        return without(self.data)
+
+
+def without(data: Sequence[str]) -> str:
+    """State which data are set aside."""
+    return f"without {', '.join(data)}"
 
 
 def most_probable(problem: DiagnosisProblem, titles: Sequence[str], found: Search) -> SetAside | None:

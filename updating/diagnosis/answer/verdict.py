@@ -15,9 +15,9 @@ from updating.diagnosis.answer.result import Shortcoming, Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.answer.set_aside import names_of
 from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.compared import Compared, Search
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
-from updating.diagnosis.search.search import Compared, Search
 from updating.problem.candidate import Candidate
 from updating.thresholds import NEGLIGIBLE_PROBABILITY
 

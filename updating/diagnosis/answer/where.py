@@ -13,7 +13,7 @@ from updating.diagnosis.answer.contributions import Contributions, contributions
 from updating.diagnosis.answer.located import LikelyPlace, Where, Zone
 from updating.diagnosis.answer.result import Verdict
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
-from updating.diagnosis.search.search import Compared, Search
+from updating.diagnosis.search.compared import Compared, Search
 from updating.effects.base import Values
 from updating.effects.box import LIKE, Place
 from updating.effects.measurement.points import channel_point

@@ -13,9 +13,9 @@ from updating.diagnosis.answer.rules import DecisionRules
 from updating.diagnosis.generic.field import Field, beside
 from updating.diagnosis.generic.parts import channels, parts
 from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.compared import Compared, Search
 from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.search import Compared, Search
 from updating.models.spec import Spec
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem

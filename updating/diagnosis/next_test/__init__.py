@@ -23,8 +23,8 @@ from updating.diagnosis.next_test.other_points import OtherPoints
 from updating.diagnosis.next_test.unknown import advise
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.prior import holds
-from updating.diagnosis.search.search import Search
 
 MAKERS: tuple[Maker, ...] = (Instruments(), SameTest(), OtherPoints(), Unclamped())
 """All kinds of test that are thought of."""

@@ -11,8 +11,8 @@ from updating.diagnosis.answer.mechanism import Mechanism
 from updating.diagnosis.answer.result import NextTest
 from updating.diagnosis.next_test.base import Site
 from updating.diagnosis.next_test.places import in_liquid
+from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.search import Search
 from updating.problem.specimen import SpecimenProblem
 
 AT_A_PLACE: Mapping[str, str] = {

@@ -138,6 +138,13 @@ def explain(
     return _sampled(problem, candidate, peaks, density)
 
 
+def either(plain: Explanation, fuller: Explanation) -> Explanation:
+    """Return the better of one set on two theories, with half the evidence of each."""
+    total = float(np.logaddexp(plain.log_evidence, fuller.log_evidence) - np.log(2))
+    chosen = max(plain, fuller, key=lambda e: e.log_evidence)
+    return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
+
+
 def _beginnings(problem: DiagnosisProblem, candidate: Candidate) -> list[FloatArray]:
     """Return where a search begins: of a local effect at the best places of a grid, else at the effects' own starts."""
     placed = basins(candidate, problem.predictor) if len(problem.specimens) == 1 else []

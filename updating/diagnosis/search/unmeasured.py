@@ -19,9 +19,10 @@ from scipy.stats import qmc
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.quantities import hertz
 from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.search import Search, examine
+from updating.diagnosis.search.search import examine
 from updating.effects import Effect
 from updating.problem.candidate import Candidate
 from updating.problem.gates import theory_error
