@@ -204,7 +204,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     statement = {
         "named": "The shaded row is the answer.",
         "class": "The shaded rows are the answer: one of them, these data cannot show which.",
-        "unknown": "None of them explains the gap.",
+        "unknown": "None of them is the answer.",
         "none": "The shaded row is the answer: no cause is needed.",
     }[diagnosis.verdict]
     if not any(row[-1] for row in cells):
