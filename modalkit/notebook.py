@@ -20,7 +20,7 @@ from modalkit.report.modes import modes_table
 from modalkit.report.page import page
 from modalkit.report.place import write_report
 from modalkit.report.sections import the_summary
-from modalkit.report.tested import sections_of_test, shapes_section
+from modalkit.report.tested import damping_section, sections_of_test, shapes_section
 from modalkit.report.updating import update_answer, update_sections
 from modalkit.workflow.case import Session
 from modalkit.workflow.existing import Modes
@@ -147,7 +147,8 @@ def _of_update(result: Update, sessions: Sequence[Session]) -> Parts:
 @_parts.register
 def _of_model(result: ModalModel, sessions: Sequence[Session]) -> Parts:
     modes = Section("Modes", [modes_table(result.modal)])
-    return "Modes", modes_answer(None, result), [modes, *sections_of_test(None, result, result.modal)]
+    sections = [modes, damping_section(result.modal), *sections_of_test(None, result, result.modal)]
+    return "Modes", modes_answer(None, result), sections
 
 
 @_parts.register
@@ -156,7 +157,7 @@ def _of_modes(result: Modes, sessions: Sequence[Session]) -> Parts:
     return (
         result.title or "Modes",
         modes_answer(None, result),
-        [modes, *sections_of_test(None, None, result.modal)],
+        [modes, damping_section(result.modal), *sections_of_test(None, None, result.modal)],
     )
 
 

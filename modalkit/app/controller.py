@@ -24,6 +24,7 @@ from modalkit.app.store import Store
 from modalkit.app.work import KINDS
 from modalkit.app.workbench import Workbench
 from modalkit.study.read import Study
+from modalkit.views.charts.damping import ExpectedDamping, damping_chart, expected_damping
 from modalkit.views.hits import frf_page, hits_page, others_page, record_page
 from modalkit.views.modes import fit_page, indicators_page, measured_page, modes_page, provisional_page
 from modalkit.views.shapes import Beside, shapes_page
@@ -189,6 +190,22 @@ class Controller:
         """Return the mode indicator functions."""
         with self._lock:
             return indicators_page(self._workbench.identified(self.study))
+
+    def damping(self) -> dict[str, Any] | None:
+        """Return the chart of the damping over frequency; None where no damping is known."""
+        with self._lock:
+            chart = damping_chart(self._workbench.modes(self.study).modal, self._expected_damping())
+            return None if chart is None else chart.data()
+
+    def _expected_damping(self) -> ExpectedDamping | None:
+        """Return what the model expects; it is solved only where it states any damping."""
+        study = self.study
+        try:
+            if study.model is None or not self._workbench.predictor(study).expects_damping:
+                return None
+            return expected_damping(self._beside(study))
+        except ModalkitError:  # the page of the model states it
+            return None
 
     def provisional(self, hertz: float, index: int) -> dict[str, Any]:
         """Return what a picture needs of a pick, before its last digits are there."""

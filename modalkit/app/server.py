@@ -44,6 +44,7 @@ PAGES: dict[str, Answer] = {
     "measured": lambda controller, a: controller.measured(),
     "modes": lambda controller, a: controller.modes(),
     "indicators": lambda controller, a: controller.indicators(),
+    "damping": lambda controller, a: controller.damping(),
     "fit": lambda controller, a: controller.fit(int(a["index"])),
     "provisional": lambda controller, a: controller.provisional(float(a["hertz"]), int(a.get("index", 0))),
     "shapes": lambda controller, a: controller.shapes(),

@@ -42,7 +42,13 @@ from modalkit.cli.options import (
     processing,
 )
 from modalkit.cli.progress import Work, reading, working
-from modalkit.cli.reporting import identified_report, named_by_hand, report_wanted, save_report
+from modalkit.cli.reporting import (
+    expected_damping,
+    identified_report,
+    named_by_hand,
+    report_wanted,
+    save_report,
+)
 from modalkit.cli.showing import (
     save_modes,
     show_hits,
@@ -298,13 +304,15 @@ def _identified_drawn(
     model: ModalModel | Modes,
     named: tuple[Sequence[float], Sequence[float]],
 ) -> dict[str, Any]:
-    """Draw an identification; its chart states which modes were added and dropped by hand."""
-    from modalkit.figures import stabilisation_figure
+    """Draw an identification, with the modes added and dropped by hand, and the damping that a model expects."""
+    from modalkit.figures import damping_figure, stabilisation_figure
 
     found = _drawn(*(() if processed is None else (processed,)), model)
     if not isinstance(model, Modes):
         add, drop = named_by_hand(files, named)
         found["stabilisation"] = stabilisation_figure(model, add=add, drop=drop)
+    if "damping" in found:
+        found["damping"] = damping_figure(model.modal, expected_damping(files, processed, model))
     return found
 
 

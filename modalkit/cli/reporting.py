@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from identification import ModalModel
     from modalkit.report.document import Document
     from modalkit.study.read import Study
+    from modalkit.views.charts.damping import ExpectedDamping
     from modalkit.workflow.case import Session
     from modalkit.workflow.processed import Processed
 
@@ -86,6 +87,17 @@ def identified_report(
     return identification_report(
         processed, modes, basis, named=named, session=session, warnings=warnings, title=study.name
     )
+
+
+def expected_damping(
+    files: Sequence[Path], processed: Processed | None, modes: ModalModel | Modes
+) -> ExpectedDamping | None:
+    """Return the damping that the model of a study expects; None without a study."""
+    from modalkit.report.tested import expected_of
+
+    study = _study(files)
+    session = None if study is None else _session(study, processed, modes)
+    return None if session is None else expected_of(session)
 
 
 def _settings(processed: Processed | None, modes: ModalModel | Modes) -> dict[str, str]:

@@ -5,6 +5,7 @@ from modalkit.figures.chart import chart_figure, sheet_figure
 from modalkit.figures.charts import (
     auto_mac_figure,
     cmif_figure,
+    damping_figure,
     frf_figure,
     mac_figure,
     overlay_figure,
@@ -23,6 +24,7 @@ __all__ = [
     "blind_figures",
     "chart_figure",
     "cmif_figure",
+    "damping_figure",
     "diagnosis_figure",
     "draw",
     "frf_figure",

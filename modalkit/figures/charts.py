@@ -19,6 +19,7 @@ from modalkit.figures.style import INK, MARGIN, SMALL, WIDTH, broken
 from modalkit.planning import Forecast
 from modalkit.views.chart import Sheet
 from modalkit.views.charts.causes import closing_chart
+from modalkit.views.charts.damping import ExpectedDamping, damping_chart
 from modalkit.views.charts.frf import test_sheet
 from modalkit.views.charts.frfs import overlaid_sheet
 from modalkit.views.charts.gap import gap_chart
@@ -219,6 +220,31 @@ def auto_mac_figure(modal: ModalData) -> Figure:
     chart = auto_mac_chart(modal)
     if chart is None:
         raise InputError("these modes have no shapes to compare; identify them from FRFs at several points")
+    return chart_figure(chart)
+
+
+def damping_figure(modal: ModalData, expected: ExpectedDamping | None = None) -> Figure:
+    """Draw the damping of the modes over their frequency, beside what a model expects.
+
+    Parameters
+    ----------
+    modal : ModalData
+        Modes with damping ratios.
+    expected : ExpectedDamping, optional
+        As of :func:`modalkit.views.charts.damping.expected_damping`.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        If no damping is known.
+    """
+    chart = damping_chart(modal, expected)
+    if chart is None:
+        raise InputError("these modes have no damping ratios to draw; identify them from FRFs")
     return chart_figure(chart)
 
 

@@ -15,6 +15,7 @@ from identification import Correlation, ModalModel
 from modalkit.figures.charts import (
     auto_mac_figure,
     cmif_figure,
+    damping_figure,
     frf_figure,
     mac_figure,
     stabilisation_figure,
@@ -86,7 +87,9 @@ def _of_model(model: ModalModel) -> dict[str, Figure]:
 
 
 def _of_modes(modal: ModalData) -> dict[str, Figure]:
-    return {"auto_mac": auto_mac_figure(modal), "shapes": shapes_figure(modal)}
+    known = modal.damping is not None and bool(np.isfinite(modal.damping).any())
+    damping = {"damping": damping_figure(modal)} if known else {}
+    return damping | {"auto_mac": auto_mac_figure(modal), "shapes": shapes_figure(modal)}
 
 
 def _of_correlation(found: Correlation) -> dict[str, Figure]:

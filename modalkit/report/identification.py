@@ -13,7 +13,7 @@ from modalkit.report.html import Raw, bullets, definitions, element, joined
 from modalkit.report.modes import modes_table
 from modalkit.report.provenance import Basis, cover, provenance
 from modalkit.report.sections import the_warnings
-from modalkit.report.tested import sections_of_test, shapes_section
+from modalkit.report.tested import damping_section, expected_of, sections_of_test, shapes_section
 from modalkit.workflow.case import Session
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.processed import Processed
@@ -60,6 +60,7 @@ def identification_report(
         [
             Section("Modes", [modes_table(modes.modal)]),
             Section("Left out", [_left_out(processed, modes)]),
+            damping_section(modes.modal, None if session is None else expected_of(session)),
             *sections_of_test(processed, identified, modes.modal, named),
             shapes_section(modes.modal, session),
             Section("Warnings", [the_warnings(list(warnings))]),

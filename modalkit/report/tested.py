@@ -14,6 +14,7 @@ from modalkit.report.document import Moving, Section
 from modalkit.report.html import Cell, Column, Raw, folded, table
 from modalkit.report.modes import modes_table
 from modalkit.views.chart import Chart
+from modalkit.views.charts.damping import ExpectedDamping, damping_chart, expected_damping
 from modalkit.views.charts.matrix import matrix_chart
 from modalkit.views.charts.poles import poles_chart
 from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, thin_cmif
@@ -64,6 +65,7 @@ def session_sections(
     test = session.study.test
     return [
         Section(f"Modes of the test{whose}", [] if modal is None else [modes_table(modal)]),
+        damping_section(modal, expected_of(session), number, whose),
         *sections_of_test(
             session.processed, session.identified, modal, (test.add, test.drop), number, whose, tests
         ),
@@ -114,6 +116,21 @@ def sections_of_test(
             Section(f"How alike the modes are{whose}", [auto_mac_chart(modal, f"auto-mac{mark}")])
         )
     return sections
+
+
+def damping_section(
+    modal: ModalData | None, expected: ExpectedDamping | None = None, number: int = 1, whose: str = ""
+) -> Section:
+    """Return the damping over frequency, beside what a model expects."""
+    mark = "" if number == 1 else f"-{number}"
+    chart = None if modal is None else damping_chart(modal, expected, f"damping{mark}")
+    return Section(f"Damping{whose}", [chart])
+
+
+def expected_of(session: Session) -> ExpectedDamping | None:
+    """Return the damping that a study's model expects; None where it states none, or does not go with the test."""
+    beside, _ = _beside(session)
+    return None if beside is None else expected_damping(beside)
 
 
 def hits_table(hits: Sequence[HitVerdict]) -> Raw:

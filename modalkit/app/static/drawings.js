@@ -7,10 +7,15 @@ import { fill, h } from "./dom.js";
 /** Put charts of a result into an element, those of the names that it has; tell whether there are any. */
 export function charted(root, drawings, names) {
   const found = names.map((name) => drawings?.charts[name]).filter(Boolean);
-  const figures = found.map((given) => figure(given, "plot"));
-  fill(root, figures);
-  found.forEach((given, i) => chart(figures[i], given));
+  figured(root, found);
   return found.length > 0;
+}
+
+/** Put charts into an element. */
+export function figured(root, charts) {
+  const figures = charts.map((given) => figure(given, "plot"));
+  fill(root, figures);
+  charts.forEach((given, i) => chart(figures[i], given));
 }
 
 /** Return a figure with its title and what it shows, and a place for the drawing. */

@@ -67,7 +67,7 @@ def test_existing_modes_get_table_mac_and_figures(tmp_path: Path, ending: str) -
     assert list(modes.table().columns) == list(mk.Modes(MODAL).table().columns)
     np.testing.assert_allclose(modes.table()["MPC"], mk.Modes(MODAL).table()["MPC"], rtol=1e-6)
     assert np.allclose(np.diag(mk.mac(modes)), 1.0)
-    assert set(mk.draw(modes, folder=str(tmp_path / "f"))) == {"auto_mac", "shapes"}
+    assert set(mk.draw(modes, folder=str(tmp_path / "f"))) == {"damping", "auto_mac", "shapes"}
     assert (tmp_path / "f" / "auto_mac.png").stat().st_size > 1000
     assert len(modes.identify(band=(50.0, 100.0))) == 1
     with pytest.raises(InputError, match="no mode between"):
@@ -264,4 +264,4 @@ def test_the_page_on_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     names: dict[str, object] = {}
     exec(code, names)
     assert (tmp_path / "figures" / "auto_mac.png").exists() and (tmp_path / "modes.csv").exists()
-    assert set(names["figures"]) == {"frf", "stabilisation", "auto_mac", "shapes"}  # type: ignore[call-overload]
+    assert set(names["figures"]) == {"frf", "stabilisation", "damping", "auto_mac", "shapes"}  # type: ignore[call-overload]

@@ -3,6 +3,7 @@
 import { get } from "../api.js";
 import { warned } from "../asked.js";
 import { axis, draw, drawFrf, line, logAxis, macMatrix, modesAxis, onclick } from "../charts.js";
+import { figured } from "../drawings.js";
 import { button, check, field, fill, fixed, h, select, sigma, table } from "../dom.js";
 import { stabilisation } from "./stabilisation.js";
 
@@ -18,6 +19,7 @@ export function open(root, app) {
   const chart = h("div"),
     fit = h("div"),
     mac = h("div"),
+    damping = h("div"),
     rows = h("div"),
     controls = h("div", { class: "controls" }),
     chooser = h("div", { class: "row" }),
@@ -27,12 +29,14 @@ export function open(root, app) {
   const readout = h("p", { class: "muted", "aria-live": "polite", id: "readout" });
   const picking = h("section", { class: "panel" }, h("h2", {}, "Stabilisation chart"), controls, chart, behind, letters, readout);
   const fitted = h("section", { class: "panel" }, h("h2", {}, "Fit"), chooser, fit);
+  const damped = h("section", { class: "panel", hidden: true }, h("h2", {}, "Damping"), damping);
   const matrix = h("section", { class: "panel" }, h("h2", {}, "Auto-MAC"), mac);
   root.append(
     notes,
     picking,
     h("section", { class: "panel" }, h("h2", {}, "Modes"), rows),
     h("div", { class: "two wide-left" }, fitted, matrix),
+    damped,
   );
   // typed: limits of the band that are not set yet, which other changes leave in their fields
   const view = { page: null, frf: null, over: "sum", lettered: null, curve: null, indicators: null, typed: {} };
@@ -53,6 +57,7 @@ export function open(root, app) {
     if (page.identified) controlled();
     view.indicators = null; // those of the state before
     await Promise.all([page.identified ? indicated().then(() => charted(page.table)) : null, page.identified ? overlaid() : null, macs()]);
+    await damp(); // last: it may have to solve the model
   }
 
   /** Draw the FRFs as long as nothing is identified yet. */
@@ -360,6 +365,12 @@ export function open(root, app) {
       xaxis: modesAxis("mode", names.length),
       yaxis: modesAxis("mode", names.length, { autorange: "reversed" }),
     });
+  }
+
+  async function damp() {
+    const given = await get("damping");
+    damped.hidden = !given;
+    figured(damping, given ? [given] : []);
   }
 
   return { update };
