@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, TypedDict
 
 from modalkit.output.fields import Of
-from updating.diagnosis.answer.result import Shortcoming
 
 SOMETHING_ELSE = "something_else"
 """What stands for a cause in no library where a set of the answer, or a row of the ranking, names its effects."""
@@ -175,7 +174,7 @@ class CauseEntry(TypedDict):
         "one set; several these data cannot separate; a gap that no set explains; no gap",
     ]
     lacks: Annotated[
-        Shortcoming | None,
+        Literal["fit", "closing", "evidence", "partners", "one size", "library"] | None,
         "what the first row lacks to be an answer; null unless `verdict` is `unknown`",
     ]
     level: Annotated[
