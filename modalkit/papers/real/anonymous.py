@@ -18,15 +18,15 @@ _FILES = {"test": ("files", "modes"), "baseline": ("files", "modes"), "model": _
 _HEADER = re.compile(r"^\s*\[\[?\s*([\w.]+)\s*\]\]?")
 
 
-def write_anonymous(source: Source, home: Path, folder: Path, number: int) -> Path:
+def write_anonymous(source: Source, home: Path | None, folder: Path, number: int) -> Path:
     """Copy a study and its data under names that say nothing.
 
     Parameters
     ----------
     source : Source
         The study.
-    home : Path
-        Folder its path starts from.
+    home : Path or None
+        Folder its path starts from, where it has one.
     folder : Path
         Where the copy goes.
     number : int
@@ -42,17 +42,18 @@ def write_anonymous(source: Source, home: Path, folder: Path, number: int) -> Pa
     StudyError
         If it cannot be read.
     """
-    original = home / source.path
+    original = (home or Path()) / (source.path or Path())
     try:
         text = source.text or original.read_text(encoding="utf-8")
         text = without_tables(text, source.drop)
         document = tomllib.loads(text)
     except (OSError, ValueError, RecursionError) as error:
         raise StudyError(f"{original}: cannot be read ({error})") from error
+    held = dict(source.tables)
     for i, name in enumerate(data_files(document)):
         copied = f"test{number}-{i}{Path(name).suffix}"
-        if source.modes:
-            (folder / copied).write_text(source.modes, encoding="utf-8")
+        if name in held:
+            (folder / copied).write_text(held[name], encoding="utf-8")
         else:
             _copy(original.parent / name, folder / copied)
         text = text.replace(f'"{name}"', f'"{copied}"')

@@ -42,20 +42,20 @@ class Source:
 
     Parameters
     ----------
-    path : Path
+    path : Path, optional
         Study file, from the folder of the samples or of the data; where the study is given as text, the file of
-        measured data that its modes were identified from.
+        measured data that its modes were identified from, or none where everything is given here.
     text : str
         The study itself, where there is no such file.
-    modes : str
-        Its table of modes, where that is not a file either.
+    tables : tuple of (str, str)
+        Files that the study names, with what stands in them, where those are no files either.
     drop : tuple of str
         Tables of the study that are left out, ``baseline`` for instance.
     """
 
-    path: Path
+    path: Path | None = None
     text: str = ""
-    modes: str = ""
+    tables: tuple[tuple[str, str], ...] = ()
     drop: tuple[str, ...] = ()
 
 
@@ -94,7 +94,7 @@ class Case:
     removed : tuple of str
         Effects taken out of the library.
     in_data : bool
-        Whether the sources lie in the folder of data, not in that of the samples.
+        Whether the sources with a path lie in the folder of data, not in that of the samples.
     """
 
     name: str

@@ -12,9 +12,9 @@ from modalkit.papers.real.case import Case, Fact
 RULES = """\
 * right: it names a set of effects that is true; or a class that holds a true set and else only sets that
   these data cannot separate from it; that a cause in no library is possible, too, counts neither way;
-* partly: it answers `unknown` where the library has the effect; or names a part of the truth only; or holds a
-  true set beside a false one; or is right but for a known number outside its 95 % interval or a place it does
-  not point to;
+* partly: it answers `unknown` where the library has the effect; or names a part of the truth only (not a
+  factor that stands beside it); or holds a true set beside a false one; or is right but for a known number
+  outside its 95 % interval or a place it does not point to;
 * wrong: it names something else, answers `none` where something is, or anything but `none` where nothing is;
 * with the effect left out of the library: `unknown` is right, and so is the same effect under another
   name; such a stand-in beside others, or with something added to it, is partly right; all else is wrong.
@@ -89,13 +89,21 @@ def _of_effects(case: Case, answer: Answer) -> Judgement:
     sets = _of_library(answer)
     true = [s for s in sets if s in case.accepted]
     if not true:
-        known = frozenset().union(*case.accepted)
-        if any(s & known for s in sets):
+        if any(s & _core(case) for s in sets):
             return Judgement("partly", "a part of the truth")
         return Judgement("wrong", "a cause that it is not")
     if any(s not in case.accepted and s not in case.equivalent for s in sets):
         return Judgement("partly", "the truth beside something else")
     return _of_numbers(case, answer)
+
+
+def _core(case: Case) -> frozenset[str]:
+    """Return the effects in every accepted set; where there is none, those of the sets that hold no other one.
+
+    What only stands beside a cause in some of them is no part of the truth by itself.
+    """
+    least = [s for s in case.accepted if not any(other < s for other in case.accepted)]
+    return frozenset.intersection(*case.accepted) or frozenset().union(*least)
 
 
 def _of_numbers(case: Case, answer: Answer) -> Judgement:

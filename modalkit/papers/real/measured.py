@@ -53,7 +53,11 @@ _SLENDER_MODES = """frequency,sigma
 _SLENDER = Case(
     name="measured slender free beam",
     kind=MEASURED,
-    sources=(Source(Path("uff/pyuff/measurement.uff"), text=_SLENDER_STUDY, modes=_SLENDER_MODES),),
+    sources=(
+        Source(
+            Path("uff/pyuff/measurement.uff"), text=_SLENDER_STUDY, tables=(("modes.csv", _SLENDER_MODES),)
+        ),
+    ),
     withheld="nothing",
     known="nothing: a uniform free beam within 0.18 %",
     source="length and section were not published: E is left wide open, only the ratios of the frequencies count; "

@@ -103,11 +103,12 @@ def run_real(
 
 def _run_case(case: Case, samples: Path, data: Path | None, diagnose: DiagnoseTogether) -> RealOutcome:
     home = data if case.in_data else samples
-    if home is None:
+    paths = [source.path for source in case.sources if source.path is not None]
+    if home is None and paths:
         return _missing(case, "needs the folder of measured data; name it with --data")
-    absent = next((s.path for s in case.sources if not (home / s.path).exists()), None)
+    absent = next((path for path in paths if home is not None and not (home / path).exists()), None)
     if absent is not None:
-        return _missing(case, f"{home / absent} is not there")
+        return _missing(case, f"{home}: no {absent} there")
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="test-") as name:
         folder = Path(name)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from conforming import departures
 
@@ -27,6 +28,8 @@ from modalkit.papers.real import (
 )
 from modalkit.papers.real.anonymous import data_files, without_tables, write_anonymous
 from modalkit.papers.real.case import PUBLISHED, sets
+from modalkit.papers.real.printed import PRINTED, PRINTED_LEFT_OUT, modes_table
+from modalkit.study.read import read_study
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "benchmarks"))
@@ -129,6 +132,15 @@ def test_the_rules_with_the_effect_left_out(message: Answer, grade: str) -> None
     assert judge(left_out, message).grade == grade
 
 
+def test_a_factor_beside_the_cause_is_no_part_of_the_truth() -> None:
+    with_factor = case(accepted=sets("fluid_added_mass", "fluid_added_mass + E"))
+    assert judge(with_factor, answer("named", "E")).grade == "wrong"
+    assert judge(with_factor, answer("named", "fluid_added_mass + taper")).grade == "partly"
+    two = case(accepted=sets("clamp_rotation", "local_stiffness", "clamp_rotation + E"))
+    assert judge(two, answer("named", "E")).grade == "wrong"
+    assert judge(two, answer("named", "local_stiffness + taper")).grade == "partly"
+
+
 @pytest.mark.parametrize(
     ("message", "grade"),
     [(answer("none"), "right"), (answer("unknown", "E"), "wrong"), (answer("named", "E"), "wrong")],
@@ -156,7 +168,7 @@ def test_every_case_is_told_with_its_source_and_has_a_study(one: Case) -> None:
     assert one.source
     assert one.why or not (one.equivalent or one.stands_in)
     if not one.in_data:
-        assert all((SAMPLES / source.path).exists() for source in one.sources)
+        assert all((SAMPLES / source.path).exists() for source in one.sources if source.path)
 
 
 def test_the_cases_have_names_of_their_own() -> None:
@@ -341,6 +353,38 @@ def test_the_matrices_of_a_model_go_with_it(tmp_path: Path) -> None:
     assert sorted(data_files(written)) == sorted(p.name for p in folder.iterdir() if p.suffix != ".toml")
     assert len(data_files(written)) == 5
     assert not {"K.mtx", "after.csv"} & set(data_files(written))
+
+
+@pytest.mark.parametrize("one", PRINTED, ids=lambda c: c.name)
+def test_a_printed_structure_needs_no_folder(one: Case, tmp_path: Path) -> None:
+    (source,) = one.sources
+    assert source.path is None
+    assert not one.in_data
+    path = write_anonymous(source, None, tmp_path, 0)
+    written = tomllib.loads(path.read_text(encoding="utf-8"))
+    assert set(data_files(written)) == {p.name for p in tmp_path.iterdir() if p.suffix != ".toml"}
+    tables = [
+        np.loadtxt(tmp_path / written[part]["modes"], delimiter=",", skiprows=1)
+        for part in ("test", "baseline")
+        if part in written
+    ]
+    for modes in tables:
+        assert modes.shape == tables[0].shape
+        assert (np.diff(modes[:, 0]) > 0.0).all()
+        assert (modes[:, 1] < 0.05 * modes[:, 0]).all()
+    assert read_study(path).model is not None
+
+
+def test_printed_structures_stand_among_the_cases() -> None:
+    names = [one.name for one in CASES]
+    assert {one.name for one in (*PRINTED, *PRINTED_LEFT_OUT)} <= set(names)
+    assert len(PRINTED) >= 10
+    assert all(one.removed for one in PRINTED_LEFT_OUT)
+
+
+def test_a_printed_digit_and_the_fit_make_the_standard_deviation() -> None:
+    assert modes_table((641.0,), 1.0, 0.0) == f"frequency,sigma\n641,{1 / 12**0.5:.4g}\n"
+    assert modes_table((641.0,), 0.0, 0.01) == "frequency,sigma\n641,6.41\n"
 
 
 def test_changed_structures_have_names_of_their_own() -> None:
