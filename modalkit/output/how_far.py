@@ -26,9 +26,8 @@ def closes(diagnosis: Diagnosis) -> str:
     )
     if diagnosis.verdict == "none":
         size = percent(diagnosis.gap.rms_percent)
-        return (
-            f"nothing to close: frequencies differ by {size} r.m.s., no more than tolerances and noise allow"
-        )
+        allowed = f"no more than tolerances and noise allow{beneath(diagnosis)}"
+        return f"nothing to close: frequencies differ by {size} r.m.s., {allowed}"
     who = "with the best-fitting (rejected) explanation, " if diagnosis.verdict == "unknown" else ""
     text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
     if not math.isfinite(shrink.held_after):
@@ -47,6 +46,16 @@ def closes(diagnosis: Diagnosis) -> str:
         share = f"closes {shrink.closed} of the reducible gap"
         text += f"; {share if shrink.closed.determined else UNDETERMINED}"
     return text + _left(diagnosis)
+
+
+def beneath(diagnosis: Diagnosis) -> str:
+    """State what a theory neglects and no cause at all was given as well; nothing where that is nothing."""
+    if not diagnosis.beneath:
+        return ""
+    most = percent(diagnosis.beneath)
+    return (
+        f" once shear and rotary inertia are counted, which the model neglects (up to {most} of a frequency)"
+    )
 
 
 def deviating(diagnosis: Diagnosis) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition.quantities import number, place, probability
 from modalkit.output.forms import numbers_a_form
-from modalkit.output.how_far import SHOWN, by_chance, closes, deviating, sure
+from modalkit.output.how_far import SHOWN, beneath, by_chance, closes, deviating, sure
 from modalkit.output.mechanism import content_text, shared_text
 from modalkit.output.names import is_numbered, owners
 from updating import Diagnosis
@@ -56,7 +56,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         sure = "" if diagnosis.suspected is None else "that is sure to be "
         if not diagnosis.comparable:
             return "no gap beyond tolerances and noise in the modes that have a partner; most have none"
-        return f"no gap {sure}beyond tolerances and noise; {_suspected(diagnosis.suspected)}"
+        allowed = f"tolerances and noise{beneath(diagnosis)}"
+        return f"no gap {sure}beyond {allowed}; {_suspected(diagnosis.suspected)}"
     if diagnosis.verdict == "unknown":
         return f"unknown: {_unknown(diagnosis)}"
     if diagnosis.verdict == "named":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from acquisition.quantities import p_value, percent, place, raised
+from modalkit.output.how_far import beneath
 from modalkit.output.names import sizes
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.ranked import Ranked
@@ -42,7 +43,8 @@ def parameters(row: Ranked) -> str:
 def answer(diagnosis: Diagnosis) -> str:
     """State the answer in one sentence."""
     if diagnosis.verdict == "none":
-        return f"No gap to explain: tolerances and noise make differences like these ({p_value(diagnosis.p_value)})"
+        text = "No gap to explain: tolerances and noise make differences like these"
+        return f"{text}{beneath(diagnosis)} ({p_value(diagnosis.p_value)})"
     if diagnosis.verdict == "unknown" and not diagnosis.comparable:
         return (
             "Most measured modes have no partner in the model: the few that have one do not identify a cause"

@@ -118,7 +118,14 @@ def diagnosis_of(
         mechanisms=certain.mechanisms,
         rules=rules,
         set_aside=most_probable(problem, titles, found),
+        beneath=_beneath(problem) if found.empty.explanation.candidate.fuller else 0.0,
     )
+
+
+def _beneath(problem: DiagnosisProblem) -> float:
+    """Return what the fuller theory takes off a frequency at most [%]."""
+    errors = [one.theory_error for one in problem.specimens if one.theory_error is not None]
+    return 100.0 * max((float(np.abs(error.theory).max()) for error in errors), default=0.0)
 
 
 def _leader(found: Search) -> Explanation:

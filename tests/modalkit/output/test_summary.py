@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 
 from modalkit.output.summary import searched_text, separated, summary_text
+from modalkit.output.words import answer
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.closing import Closed, Remainder, Shrink
 from updating.diagnosis.answer.located import Where, Zone
@@ -383,3 +384,12 @@ def test_a_mirrored_region_stands_in_the_cause(verdict: str) -> None:
     sets = (("local_stiffness",), ("E",))[: 1 + (verdict == "class")]
     line = summary_text(replace(NAMED, verdict=verdict, sets=sets, ranking=(soft, E)))[0]  # type: ignore[arg-type]
     assert "storey_1" in line
+
+
+def test_no_gap_beside_what_the_theory_neglects_says_how_much_that_is() -> None:
+    said = "once shear and rotary inertia are counted, which the model neglects (up to 2.8 % of a frequency)"
+    thin = lines(NONE, beneath=2.8)
+    assert said in thin["Cause"]
+    assert thin["Closes"].endswith(f"no more than tolerances and noise allow {said}")
+    assert said in answer(replace(NONE, beneath=2.8))
+    assert "neglects" not in " ".join([*lines(NONE).values(), answer(NONE)])

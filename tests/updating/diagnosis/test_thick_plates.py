@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from updating_cases import PLATE, STEEL
 
+from modalkit.output.summary import answers
 from modalkit.simulator.bodies.plate.parts import PlateAttached
 from modalkit.simulator.bodies.plate.plate import Plate
 from updating import LIBRARY, Case, Measured, Spec, diagnose
@@ -52,6 +53,8 @@ def test_nothing_is_named_where_shear_is_all_that_is_missing(theory: str) -> Non
     thin = theory == "kirchhoff"
     assert ("every set of causes was compared with and without" in said) == thin
     assert ('theory = "mindlin" includes them' in said) == thin
+    assert (found.beneath > 100 * NOISE) == thin
+    assert ("which the model neglects" in " ".join(answers(found).values())) == thin
     why = str(found.not_examined["shear"])
     assert ("added to every set" in why) == thin
     assert ("has it already" in why) != thin

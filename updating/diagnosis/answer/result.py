@@ -134,6 +134,9 @@ class Diagnosis(Shown):
         What the answer was decided by.
     set_aside : SetAside, optional
         Data that are worse than stated if there is no cause; None where no set takes any to be.
+    beneath : float
+        What shear and rotary inertia, which the theory neglects and which no cause at all was given as well, take off a
+        frequency at most; 0 where the model has them or they are a cause like others [%].
     """
 
     title: str
@@ -159,6 +162,7 @@ class Diagnosis(Shown):
     mechanisms: tuple[Mechanism, ...] = ()
     rules: DecisionRules = DEFAULT_RULES
     set_aside: SetAside | None = None
+    beneath: float = 0.0
 
     @property
     def suspected(self) -> Ranked | None:
