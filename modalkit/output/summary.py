@@ -108,6 +108,11 @@ def _unknown(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.lacks == "one size":
         return f"the gap is real; {first} fits best, but parts of the data require different sizes of it"
+    if diagnosis.lacks == "samples":
+        return (
+            f"the gap is real; {first} fits best, but its probability is not known: the likelihood is too rough for"
+            " samples to determine it"
+        )
     if diagnosis.lacks == "library":
         return f"the gap is real; {first} fits best, but {_of_no_library(diagnosis.something_else)}"
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"

@@ -174,7 +174,7 @@ class CauseEntry(TypedDict):
         "one set; several these data cannot separate; a gap that no set explains; no gap",
     ]
     lacks: Annotated[
-        Literal["fit", "closing", "evidence", "partners", "one size", "library"] | None,
+        Literal["fit", "closing", "evidence", "samples", "partners", "one size", "library"] | None,
         "what the first row lacks to be an answer; null unless `verdict` is `unknown`",
     ]
     level: Annotated[

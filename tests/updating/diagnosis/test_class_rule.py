@@ -19,6 +19,7 @@ def row(
     fits: float = 0.5,
     without: float = -np.inf,
     at_end: bool = False,
+    settled: bool = True,
 ) -> Any:
     """Return a set that was weighed, its parameters in the middle of their priors and determined."""
     marginal = SimpleNamespace(log_likelihood=log_likelihood)
@@ -30,6 +31,7 @@ def row(
         best=SimpleNamespace(marginal=marginal, coordinates=np.full(size, 0.5), possible=True),
         samples=np.full((2, size), 0.5),
         weights=np.array([0.5, 0.5]),
+        settled=settled,
     )
     share = {"probability": probability, "p_value": fits, "as_stated": fits, "without": without}
     share["extreme"] = explanation.names if at_end else ()
@@ -163,3 +165,9 @@ def test_a_cause_in_no_library_is_one_of_a_class_where_a_set_is_not_sure_without
     )
     assert decide(half, significant=True, unnamed=0.04)[1] == (("E",), ("density",))
     assert decide(half, significant=True, unnamed=0.2)[1] == (("E",), ("density",), ("something_else",))
+
+
+def test_a_probability_that_rests_on_hardly_any_sample_names_nothing() -> None:
+    found: Any = SimpleNamespace(compared=(row("E", 1.0, 100.0, settled=False),), empty=row("", 0.0, 0.0))
+    assert shortcoming(found) == "samples"
+    assert shortcoming(SimpleNamespace(compared=(row("E", 1.0, 100.0),), empty=found.empty)) is None

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from acquisition.arrays import FloatArray
 from updating.diagnosis.search.fit import Peak, Point
-from updating.diagnosis.search.sampling import about, draw_posterior, effective
+from updating.diagnosis.search.sampling import about, draw_posterior
 from updating.likelihood.gaussian import Marginal
 
 
@@ -36,7 +37,7 @@ def test_the_evidence_of_a_known_integral(k: int, off: float) -> None:
     truth = multivariate_normal(np.full(k, 0.5), sigma**2 * np.eye(k))
     start = about([peak(np.eye(k) * 9 / sigma**2, 0.5 + off * sigma)])
     found = draw_posterior(lambda u: np.atleast_1d(truth.logpdf(u)), start, min(32 * 2**k, 256))
-    assert effective(found.weights) > (100 if k < 5 else 20)
+    assert found.effective > (100 if k < 5 else 20)
     assert found.log_evidence == pytest.approx(0.0, abs=0.25)  # 2.5 standard deviations of 100 samples
     mean = found.weights @ found.samples
     np.testing.assert_allclose(mean, 0.5, atol=sigma * 0.35)
@@ -70,3 +71,17 @@ def test_a_likelihood_of_nothing_has_no_evidence() -> None:
     found = draw_posterior(lambda u: np.full(len(u), -np.inf), about([peak(np.eye(2))]), 64)
     assert found.log_evidence == -np.inf
     assert found.weights.sum() == pytest.approx(1.0)
+
+
+def test_a_rough_likelihood_does_not_make_narrow_intervals() -> None:
+    """A ripple of 40 over a wide maximum: one sample in hundreds is on a crest of it, and carries all the weight."""
+    sigma, k = 0.1, 6
+
+    def rippled(u: FloatArray) -> FloatArray:
+        wide = multivariate_normal(np.full(k, 0.5), sigma**2 * np.eye(k)).logpdf(u)
+        return np.asarray(wide + 40 * np.cos(900 * u.sum(axis=1)) * np.cos(700 * u[:, 0]))
+
+    found = draw_posterior(rippled, about([peak(np.eye(k) / sigma**2, 0.5)]), 256)
+    assert found.effective < 10
+    spread = np.sqrt(found.weights @ (found.samples - found.weights @ found.samples) ** 2)
+    assert (spread > 0.3 * sigma).all()

@@ -25,10 +25,10 @@ from updating.effects.obstacles import Obstacle
 
 Verdict = Literal["named", "class", "unknown", "none"]
 
-Shortcoming = Literal["fit", "closing", "evidence", "partners", "one size", "library"]
+Shortcoming = Literal["fit", "closing", "evidence", "samples", "partners", "one size", "library"]
 """What the most probable set lacks where none is an answer: it is rejected, closes too little and leaves more than
-noise, is not clearly more likely than tolerances further off, most modes have no partner, parts of the data want
-another size of it each, or a cause that is not in the library is as likely."""
+noise, is not clearly more likely than tolerances further off, its probability rests on hardly any sample, most modes
+have no partner, parts of the data want another size of it each, or a cause that is not in the library is as likely."""
 
 SETS = 10
 """So many sets of effects are printed."""

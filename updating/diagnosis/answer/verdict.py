@@ -135,6 +135,8 @@ def shortcoming(
         return "closing"
     if not _better(found, rules):
         return "evidence"
+    if not rows[0].explanation.settled:
+        return "samples"
     if unnamed >= rules.credible_share:
         return "library"
     return None if comparable or len(_credible(found, rules)) > 1 else "partners"

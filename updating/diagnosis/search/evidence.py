@@ -14,7 +14,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, evaluate_many, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.ridges import along_ridge
-from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, effective
+from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, least
 from updating.problem.candidate import Candidate
 from updating.problem.screening import basins
 from updating.steps import SingleCause
@@ -53,6 +53,8 @@ class Explanation:
         Whether the samples were weighted by parabolas only.
     other : float
         Logarithm of what the evidence of the other theory adds, relative to this one's [-].
+    effective : float
+        As how many independent samples of the posterior the weighted ones are worth; nothing of a draft [-].
     """
 
     candidate: Candidate
@@ -63,6 +65,12 @@ class Explanation:
     peaks: tuple[Peak, ...] = ()
     laplace_only: bool = False
     other: float = 0.0
+    effective: float = 0.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether its evidence rests on enough samples to be one; that of a draft, or without a parameter, does."""
+        return not 0 < self.effective < least(self.samples.shape[1])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -78,11 +86,6 @@ class Explanation:
     def tops(self) -> list[FloatArray]:
         """Prior quantiles of its maxima, from which to search where little is different."""
         return [peak.point.coordinates for peak in self.peaks] or [self.best.coordinates]
-
-    @property
-    def effective(self) -> float:
-        """As how many independent samples of the posterior the weighted ones are worth; nothing of a draft [-]."""
-        return 0.0 if self.laplace_only else effective(self.weights)
 
     def restricted(self, candidate: Candidate, columns: IntArray) -> Explanation:
         """Return its result for some of its effects alone, of those whose coordinates are ``columns``."""
@@ -204,7 +207,16 @@ def _explanation(
     candidate: Candidate, best: Point, found: Posterior, peaks: list[Peak], *, laplace_only: bool = False
 ) -> Explanation:
     evidence = found.log_evidence + candidate.log_weight
-    return Explanation(candidate, evidence, best, found.samples, found.weights, tuple(peaks), laplace_only)
+    return Explanation(
+        candidate,
+        evidence,
+        best,
+        found.samples,
+        found.weights,
+        tuple(peaks),
+        laplace_only,
+        effective=0.0 if laplace_only else found.effective,
+    )
 
 
 def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:

@@ -112,17 +112,28 @@ class Posterior:
     samples : (m, k) array
         Prior quantiles [-].
     weights : (m,) array
-        Their weights, summing to 1 [-].
+        Their weights, summing to 1; where hardly any sample carries them, to a power by which some do [-].
+    effective : float
+        As how many independent samples they are worth, to no power [-].
     """
 
     log_evidence: float
     samples: FloatArray
     weights: FloatArray
+    effective: float
 
 
 def effective(weights: FloatArray) -> float:
     """Return as how many independent samples the weighted ones are worth (Kish 1965), weights (m,) summing to 1 [-]."""
     return float(1 / np.sum(weights**2))
+
+
+def least(parameters: int) -> int:
+    """Return how many independent samples the middle and the spread of so many parameters need: twice as many, and two.
+
+    Fewer determine no integral, either: most of it may be where none is.
+    """
+    return 2 * (1 + parameters)
 
 
 def draw_posterior(
@@ -133,6 +144,9 @@ def draw_posterior(
     most: int = MOST_SAMPLES,
 ) -> Posterior:
     """Draw from a mixture and from what it is fitted to until enough samples carry the weight.
+
+    Where a handful carries it in the end, its spread is not that of the posterior, and far too narrow. Weights to a
+    power below one are those of a wider posterior.
 
     Parameters
     ----------
@@ -155,22 +169,23 @@ def draw_posterior(
         log_weight = height - density - np.log(count)
         total = float(np.logaddexp.reduce(log_weight))
         if np.isneginf(total):
-            return Posterior(total, samples, np.full(len(samples), 1 / len(samples)))
-        found = Posterior(total, samples, np.exp(log_weight - total))
-        if effective(found.weights) >= ENOUGH_SAMPLES or (1 + len(drawn)) * count > most:
-            return found
-        mixture = mixture.fitted(samples, _flattened(log_weight, 2 * (1 + samples.shape[1])))
+            return Posterior(total, samples, np.full(len(samples), 1 / len(samples)), 0.0)
+        number = effective(np.exp(log_weight - total))
+        flat = _flattened(log_weight, least(samples.shape[1]))
+        if number >= ENOUGH_SAMPLES or (1 + len(drawn)) * count > most:
+            return Posterior(total, samples, flat, number)
+        mixture = mixture.fitted(samples, flat)
 
 
-def _flattened(log_weight: FloatArray, least: float) -> FloatArray:
-    """Return a power of the weights, the first of 1, 1/2, 1/4 ... by which ``least`` samples carry it, (m,) [-].
+def _flattened(log_weight: FloatArray, wanted: int) -> FloatArray:
+    """Return a power of the weights, the first of 1, 1/2, 1/4 ... by which ``wanted`` samples carry it, (m,) [-].
 
     The power is taken of logarithms: far from a narrow maximum most weights are too small for a number. Where fewer
-    samples than ``least`` are possible, the weights stay as they are.
+    samples than that are possible, the weights stay as they are.
     """
     height = log_weight - log_weight.max()
     weights = np.exp(height) / np.sum(np.exp(height))
-    while effective(weights) < least <= np.isfinite(height).sum():
+    while effective(weights) < wanted <= np.isfinite(height).sum():
         height = height / 2
         weights = np.exp(height) / np.sum(np.exp(height))
     return np.asarray(weights)
