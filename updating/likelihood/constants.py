@@ -16,6 +16,7 @@ from updating.likelihood.missed_modes import MissedModes
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
+from updating.prediction.misplaced import best_levels
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
     DELAY_FIT_ERROR,
@@ -168,9 +169,11 @@ class Constants(Quantity):
             self.phases.factor(view) * level if self.phases.present else np.tile(level, (len(constants), 1))
         )
         if not test.absolute:
-            return np.asarray(level * _projection(measured, constants * level, axis=0))
+            return np.asarray(level * best_levels(measured, constants * level))
         if test.calibration > UNKNOWN_LEVEL:
-            return np.asarray(level * float(_projection(measured, constants * level, axis=None)))
+            return np.asarray(
+                level * best_levels(measured.reshape(-1, 1), (constants * level).reshape(-1, 1))
+            )
         return level
 
     def _late(self, delay: float) -> FloatArray:
@@ -184,7 +187,7 @@ class Constants(Quantity):
         A change of the modes' levels errs as a whole, what is no mere change of level point by point.
         """
         before = self._nominal
-        share = _projection(predicted, before, axis=0)
+        share = best_levels(predicted, before)
         return (fidelity * (predicted - share * before)) ** 2, (fidelity * (share - 1) * before).reshape(
             -1, 1
         )
@@ -201,9 +204,3 @@ class Constants(Quantity):
             return (self.setting.measured.level_sigma * predicted).reshape(-1, 1)
         n = predicted.shape[1]
         return np.asarray((FREE_LEVEL_DOUBT * predicted[:, :, None] * np.eye(n)).reshape(-1, n))
-
-
-def _projection(data: FloatArray, model: FloatArray, *, axis: int | None) -> FloatArray:
-    """Return the factor on the model that fits the data best, per column or over all."""
-    power = np.maximum(np.sum(model**2, axis=axis), 1e-300)
-    return np.asarray(np.sum(data * model, axis=axis) / power)

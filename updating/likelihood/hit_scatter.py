@@ -4,10 +4,11 @@ The errors that the hits of one FRF make in its modal constants have the covaria
 
     S = diag(f_r w_r^2) + tau^2 / N sum_d s_d s_d^T + gamma^2 / N c c^T
 
-over the modes. The slopes ``s`` of the constants by the place of the hit are the model's, the constants ``c`` are
-measured, and ``w`` is what the fit's weights state. Only the sizes are unknown, and alike at all points: the factors
-``f_r``, the scatter of the places ``tau`` [m] and of the gain ``gamma`` [-]. That is a factor analysis with known
-loadings. Expectation and maximisation finds its most probable sizes (Rubin and Thayer, Psychometrika 47 (1982) 69-76).
+over the modes. The slopes ``s`` of the constants by the place of the hit are those of `updating.prediction.misplaced`,
+the constants ``c`` are measured, and ``w`` is what the fit's weights state. Only the sizes are unknown, and alike at
+all points: the factors ``f_r``, the scatter of the places ``tau`` [m] and of the gain ``gamma`` [-]. That is a factor
+analysis with known loadings. Expectation and maximisation finds its most probable sizes (Rubin and Thayer,
+Psychometrika 47 (1982) 69-76).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from identification.hit_errors import HitErrors
+from updating.prediction.misplaced import moved, stated_levels
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 
@@ -97,9 +99,8 @@ def hit_scatter(measured: Measured, prediction: Prediction) -> HitScatter | None
     if errors is None or not np.any(errors.freedom > 0):
         return None
     constants = measured.constants
-    power = np.maximum(np.sum(prediction.constants**2, axis=0), np.finfo(float).tiny)
-    level = np.sum(constants * prediction.constants, axis=0) / power
-    slopes = np.moveaxis(prediction.along * level, 0, -1)
+    by = moved(measured, prediction, stated_levels(measured, prediction), constants)
+    slopes = np.moveaxis(by.first, 0, -1)
     loadings = np.concatenate([slopes, constants[:, :, None]], axis=2)
     if loadings.shape[1] <= loadings.shape[2]:
         return None

@@ -81,7 +81,7 @@ class Nodes:
     def _fixed(self) -> IntArray:
         """Point of the transducer of every FRF that several share, (n_frf,)."""
         test = self.setting.measured
-        return test.hit if test.roving == "seen" else test.seen
+        return np.asarray(getattr(test, test.fixed))
 
     def _elsewhere(self, now: Prediction) -> FloatArray:
         """Return the shapes where the other one was, (n_frf, n_modes) [kg^-1/2]."""

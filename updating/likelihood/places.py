@@ -13,6 +13,7 @@ from updating.likelihood.base import Setting
 from updating.likelihood.hit_scatter import HitScatter
 from updating.likelihood.registration import registration_doubt, with_registration
 from updating.models.state import NOMINAL, Role, State
+from updating.prediction.misplaced import moved, per_place, squared_wave_numbers
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import relabelled
 
@@ -68,39 +69,11 @@ class Places:
         measured : (n_frf, n_modes) array
             The constants that they are to be [-].
         """
-        bare = (self.setting.measured.hit < 0)[:, None]
-        seen, hit = self._as_measured(now, level, measured)
-        by_hit = level * now.gain * seen * now.hit_slopes
-        by_sensor = level * now.gain * hit * now.seen_slopes
-        sensors = [] if bare.all() else [self._by_place(*self._seen, by_sensor)]
-        moved = [self._by_place(*doubt, np.where(bare, by_sensor, by_hit)) for doubt in self._hit]
-        return [*moved, *sensors, self._together(by_hit + by_sensor)]
-
-    def _as_measured(
-        self, now: Prediction, level: FloatArray, measured: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return the shapes at sensor and force, (n_frf, n_modes); where FRFs share one of them, as it was measured.
-
-        Near a node the model hardly determines how far a mode moves there, for it is the place that decides, and the
-        other ends' errors go with that.
-        """
-        shared, alike = self._shared
-        ends = {"seen": now.seen, "hit": now.hit}
-        others = level * now.gain * ends[self.setting.measured.roving]
-        power = alike @ others**2
-        known = (np.sum(alike, axis=1) > 1)[:, None] & (power > 0)
-        ends[shared] = np.where(
-            known, alike @ (others * measured) / np.where(known, power, 1.0), ends[shared]
-        )
-        return ends["seen"], ends["hit"]
-
-    @cached_property
-    def _shared(self) -> tuple[Literal["seen", "hit"], FloatArray]:
-        """The end that does not rove, and 1 for every two FRFs that have it in common, (n_frf, n_frf) [-]."""
         test = self.setting.measured
-        end: Literal["seen", "hit"] = "hit" if test.roving == "seen" else "seen"
-        point = getattr(test, end)
-        return end, ((point[:, None] == point) & (test.hit >= 0)).astype(float)
+        by = moved(test, now, level, measured)
+        sensors = [] if test.bare else [per_place(*self._seen, by.sensor)]
+        first = [per_place(*doubt, by.first) for doubt in self._hit]
+        return [*first, *sensors, self._together(by.first + by.sensor)]
 
     def _together(self, along: FloatArray) -> FloatArray:
         """Return a column for where the points as a whole lie along each axis that leaves it in doubt."""
@@ -184,7 +157,7 @@ class Places:
             What else is supposed: where labels of points were exchanged, a mark is that of the other point.
         """
         test, spec = self.setting.measured, self.setting.predictor.spec
-        moved: dict[Role, tuple[float, ...]] = {}
+        away_by: dict[Role, tuple[float, ...]] = {}
         taken = []
         for marks, by in zip(self.marks, self._by_mark(shift), strict=True):
             points = relabelled(marks.points, marks.end, state)
@@ -193,12 +166,12 @@ class Places:
             there = np.clip(at + by * marks.doubt, np.minimum(at, 0.0), np.maximum(at, size))
             away = there - at
             taken.append((away / np.where(marks.doubt > 0, marks.doubt, 1.0)).ravel())
-            moved |= {
+            away_by |= {
                 (marks.end, point): tuple(step)
                 for point, step in zip(points.tolist(), away.tolist(), strict=True)
                 if any(step)
             }
-        return State(moved=moved) if moved else NOMINAL, np.concatenate([np.zeros(0), *taken])
+        return State(moved=away_by) if away_by else NOMINAL, np.concatenate([np.zeros(0), *taken])
 
     def _by_mark(self, shift: FloatArray) -> list[FloatArray]:
         parts = np.split(shift, np.cumsum([one.doubt.size for one in self.marks])[:-1]) if self.marks else []
@@ -216,9 +189,7 @@ class Places:
         noise : (n_modes,) array
             Independent noise of the constants of each mode over their r.m.s. [-].
         """
-        ends = {"hit": (now.hit, now.hit_slopes), "seen": (now.seen, now.seen_slopes)}
-        values, slopes = ends[self.setting.measured.roving]
-        waves = np.mean(slopes**2, axis=1) / np.maximum(np.mean(values**2, axis=0), 1e-300)
+        waves = squared_wave_numbers(self.setting.measured, now)
         worst = np.max(0.5 * waves / noise, axis=1)
         found = [np.zeros(0)]
         for marks in self.marks:  # constants that share a mark leave it together
@@ -241,11 +212,3 @@ class Places:
                 at, size = test.points[points, axis], (spec.length, spec.width)[axis]
                 doubt[:, axis] = with_registration(doubt[:, axis], at, size, loose)
         return rank, doubt
-
-    @staticmethod
-    def _by_place(rank: IntArray, sigma: FloatArray, along: FloatArray) -> FloatArray:
-        """Return one column per point and direction of slopes (dim, n_frf, n_modes), each times the doubt there."""
-        n_dim, n_frf, n_modes = along.shape
-        columns = np.zeros((n_frf, n_modes, len(sigma), n_dim))
-        columns[np.arange(n_frf), :, rank] = np.moveaxis(along * sigma[rank].T[:, :, None], 0, -1)
-        return columns.reshape(n_frf * n_modes, -1)

@@ -83,8 +83,3 @@ class Prediction(Displayed):
     def along(self) -> FloatArray:
         """Derivatives of the constants by the position of the hit, 0 where none is known, (dim, n_frf, n_modes)."""
         return np.asarray(self.gain * self.seen * self.hit_slopes)
-
-    @cached_property
-    def along_seen(self) -> FloatArray:
-        """Derivatives of the constants by the position of the sensor, (dim, n_frf, n_modes)."""
-        return np.asarray(self.gain * self.seen_slopes * self.hit)

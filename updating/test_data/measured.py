@@ -176,6 +176,17 @@ class Measured(Displayed):
         seen, hit = np.unique(self.seen), np.unique(self.hit[self.hit >= 0])
         return "seen" if len(seen) > len(hit) else "hit"
 
+    @property
+    def fixed(self) -> Literal["seen", "hit"]:
+        """The other end: the sensors, or the hammer."""
+        return "hit" if self.roving == "seen" else "seen"
+
+    @cached_property
+    def sharing(self) -> FloatArray:
+        """1 for every two FRFs with a force that have that end in common, (n_frf, n_frf) [-]."""
+        point: IntArray = getattr(self, self.fixed)
+        return np.asarray((point[:, None] == point) & (self.hit >= 0), dtype=float)
+
     def same_signs(self, constants: FloatArray) -> FloatArray:
         """Return by what sign each predicted mode, (n_frf, n_modes), is to be taken; a product's is not free [-]."""
         if not self.bare:

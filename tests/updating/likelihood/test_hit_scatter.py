@@ -99,7 +99,9 @@ def test_the_order_of_points_and_the_sign_of_a_sensor_change_nothing() -> None:
     assert hits is not None
     order = np.random.default_rng(0).permutation(POINTS)
     mixed = replace(test, constants=-test.constants[order], hit_errors=hits.rows(order), hit=test.hit[order])
-    turned = replace(truth, constants=truth.constants[order], hit_slopes=truth.hit_slopes[:, order])
+    turned = replace(
+        truth, constants=truth.constants[order], hit=truth.hit[order], hit_slopes=truth.hit_slopes[:, order]
+    )
     there = found(mixed, turned)
     assert there.white == pytest.approx(plain.white[order], rel=1e-6)
     assert there.place == pytest.approx(plain.place[order], rel=1e-6)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import FloatArray
+from updating.prediction.misplaced import best_levels, moved, per_place, squared_wave_numbers, stated_levels
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 from updating.update.data.whitening import Whitening, whitening
@@ -31,19 +32,13 @@ def constant_errors(
     """
     extra = FINEST**2 + (0.0 if discrepancy is None else discrepancy**2)
     stated = 0.0 if test.guessed and discrepancy is not None else test.own_sigma**2
-    left_out, stretched = _curved(test, at)
+    left_out, places = _misplaced(test, at)
     sigma = np.sqrt(stated + extra * np.mean(test.constants**2, axis=0, keepdims=True) + left_out)
     sigma = np.broadcast_to(sigma, test.constants.shape).ravel()
-    common = [_flat(_misplaced(test, at)), _flat(stretched), calibration * _all_alike(test, at)]
+    common = [*places, calibration * _all_alike(test, at)]
     if test.shared is not None:
         common.append(_flat(_smooth(test, at, test.shared)))
     return whitening(sigma, np.hstack(common))
-
-
-def _level(test: Measured, at: Prediction) -> FloatArray:
-    """Return the factor that brings each predicted mode nearest to the measured one, (n_modes,) [-]."""
-    fit = np.sum(test.constants * at.constants, axis=0)
-    return np.asarray(fit / np.maximum(np.sum(at.constants**2, axis=0), 1e-300))
 
 
 def _all_alike(test: Measured, at: Prediction) -> FloatArray:
@@ -54,14 +49,16 @@ def _all_alike(test: Measured, at: Prediction) -> FloatArray:
     Fröhner, Nucl. Sci. Eng. 126 (1997) 1-18).
     """
     signs = test.same_signs(at.constants)
-    return np.asarray(np.median(signs * _level(test, at)) * (signs * at.constants).reshape(-1, 1))
+    level = np.median(signs * best_levels(test.constants, at.constants))
+    return np.asarray(level * (signs * at.constants).reshape(-1, 1))
 
 
 def _smooth(test: Measured, at: Prediction, shared: FloatArray) -> FloatArray:
     """Return shared errors with their part along each measured shape put along the predicted one, for that reason."""
     shape = test.constants[..., None]
     along = np.sum(shape * shared, axis=0) / np.maximum(np.sum(shape**2, axis=0), 1e-300)
-    return np.asarray(shared + ((at.constants * _level(test, at))[..., None] - shape) * along)
+    predicted = at.constants * best_levels(shape[..., 0], at.constants)
+    return np.asarray(shared + (predicted[..., None] - shape) * along)
 
 
 def _flat(causes: FloatArray) -> FloatArray:
@@ -69,49 +66,31 @@ def _flat(causes: FloatArray) -> FloatArray:
     return causes.reshape(rows * modes, count)
 
 
-def _misplaced(test: Measured, at: Prediction) -> FloatArray:
-    """Return what each point hit, and each sensor, out of place by a sigma does to the constants.
+def _misplaced(test: Measured, at: Prediction) -> tuple[FloatArray, list[FloatArray]]:
+    """Return what hits and sensors out of place by a sigma do: a variance (1, n_modes), causes (n_frf * n_modes, k).
 
-    A point's error is the same for all modes and all sensors: one cause for each direction, (n_frf, n_modes, k).
+    A point's error is the same for all modes and all sensors: one cause for each direction. What slopes leave out is a
+    variance of its own for each place of what roves, and a factor on all constants of a mode for each fixed transducer.
+    Its size is half the curvature times the square of the error, whose mean square is 3 sigma^4. A transducer that is
+    far from a crest feels the curvature of the whole wave.
     """
-    rows, modes = test.constants.shape
     if test.position_sigma <= 0 or not len(at.seen_slopes):
-        return np.zeros((rows, modes, 0))
-    bare = test.hit < 0
-    hit = _by_point(_along(test, at), np.asarray(np.where(bare, test.seen, test.hit)), len(test.points))
-    seen = _by_point(at.along_seen * ~bare[:, None], test.seen, len(test.points))
-    return np.asarray(test.position_sigma * np.concatenate([hit, seen], axis=2) * _level(test, at)[:, None])
-
-
-def _curved(test: Measured, at: Prediction) -> tuple[FloatArray, FloatArray]:
-    """Return what slopes leave out of misplaced points' errors: a variance by hits, causes by sensors.
-
-    Half the curvature times the square of the error, whose mean square is 3 sigma^4; the curvature is taken for that
-    of waves with the mode's slopes, in every direction, whose crest a sensor may be far from. A sensor's error
-    stretches all constants of a mode that it measures: (1, n_modes) [1/kg^2] and (n_frf, n_modes, n_modes *
-    n_sensors) [1/kg].
-    """
-    rows, modes = test.constants.shape
-    if test.position_sigma <= 0 or not len(at.seen_slopes):
-        return np.zeros((1, modes)), np.zeros((rows, modes, 0))
-    power = np.maximum(np.mean(at.constants**2, axis=0), 1e-300)
-    wave = np.sum(np.mean(_along(test, at) ** 2, axis=1), axis=0) / power
-    part = np.sqrt(0.75) * test.position_sigma**2 * wave
-    crest = np.sqrt(1 + np.sum(np.mean(at.along_seen**2, axis=1), axis=0) / np.maximum(wave * power, 1e-300))
-    stretch = at.constants * _level(test, at) * part * crest
-    sensors = [test.seen == s for s in test.sensors]
-    causes = [(stretch * own[:, None])[..., None] * np.eye(modes) for own in sensors]
-    stretched = np.concatenate(causes, axis=2) if causes else np.zeros((rows, modes, 0))
-    return np.asarray(part**2 * np.mean(test.constants**2, axis=0))[None], stretched
-
-
-def _along(test: Measured, at: Prediction) -> FloatArray:
-    """Return the constants' derivatives by the place of what roves, the sensor where no force is known."""
-    return np.where((test.hit < 0)[:, None], at.along_seen, at.along)
-
-
-def _by_point(slopes: FloatArray, point: IntArray, count: int) -> FloatArray:
-    """Sort slopes (dim, n_frf, n_modes) by the point that moves, (n_frf, n_modes, dim * count)."""
-    own = point[:, None] == np.arange(count)
-    parts = slopes[..., None] * own[None, :, None, :]
-    return np.concatenate(list(parts), axis=2)
+        return np.zeros((1, test.constants.shape[1])), []
+    level = stated_levels(test, at)
+    by = moved(test, at, level, test.constants)
+    doubts = np.full((len(test.points), len(by.first)), test.position_sigma)
+    causes = [
+        per_place(np.where(test.hit < 0, test.seen, test.hit), doubts, by.first),
+        per_place(test.seen, doubts, by.sensor),
+    ]
+    waves = np.sum(squared_wave_numbers(test, at), axis=0)
+    left_out = 0.75 * test.position_sigma**4 * waves
+    if test.absolute and not test.bare:
+        roving, fixed = (at.hit, by.sensor) if test.fixed == "seen" else (at.seen, by.first)
+        size = np.sqrt(left_out * (waves * by.constants**2 + np.sum(fixed**2, axis=0)))
+        rank = np.unique(getattr(test, test.fixed), return_inverse=True)[1][:, None]
+        row, mode = np.indices(size.shape)
+        stretched = np.zeros((*size.shape, rank.max() + 1, size.shape[1]))
+        stretched[row, mode, rank, mode] = np.copysign(size, roving)
+        causes.append(stretched.reshape(size.size, -1))
+    return (left_out * waves * np.mean(test.constants**2, axis=0))[None], causes
