@@ -50,8 +50,8 @@ def spent() -> float:
 def measure(n: int) -> dict[str, float]:
     """Read a block of one size and reduce it; return what each step takes [s], and the most memory [GB]."""
     from updating.models import Material, Spec, build_structure
-    from updating.models.decks import imported as made_of
-    from updating.models.decks import read_deck_model
+    from updating.models.imported.decks import read_deck_model
+    from updating.models.imported.of_deck import imported as made_of
     from updating.models.parts import Region
     from updating.models.reduction import reduce_structure
     from updating.models.state import State

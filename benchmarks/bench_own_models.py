@@ -41,10 +41,10 @@ from updating import (
     measured_from_modes,
 )
 from updating.models import Damping, Region
-from updating.models.decks import imported as made_of
-from updating.models.decks import read_deck_model
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
+from updating.models.imported.decks import read_deck_model
+from updating.models.imported.of_deck import imported as made_of
 from updating.update import Update, update
 
 ROOT = Path(__file__).resolve().parents[1]

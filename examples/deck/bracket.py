@@ -22,8 +22,8 @@ from acquisition import Dof, Geometry, hammer_test, write_uff
 from acquisition.arrays import FloatArray
 from acquisition.synthetic import HammerPlan, modal_system
 from updating.models import Material, Spec, build_structure
-from updating.models.decks import imported as made_of
-from updating.models.decks import read_deck_model
+from updating.models.imported.decks import read_deck_model
+from updating.models.imported.of_deck import imported as made_of
 
 LENGTH, WIDTH, HEIGHT, SHEET = 100.0, 60.0, 80.0, 8.0
 """Of the base, of both, of the wall above it, and how thick these are [mm]."""

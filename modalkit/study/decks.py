@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from acquisition.errors import StudyError
 from modalkit.study.matrices import FACTORS_ALONE, FOREIGN, sides_of, spec_of
 from updating.models import Damping, Material, Region, Spec
-from updating.models.decks import DeckModel, imported, read_deck_model
 from updating.models.imported import SI, UNITS
+from updating.models.imported.decks import DeckModel, read_deck_model
+from updating.models.imported.of_deck import imported
 
 if TYPE_CHECKING:
     from modalkit.study.model_tables import ModelTable

@@ -12,9 +12,9 @@ from modalkit.study.hypothesis_table import HypothesisTable
 from modalkit.study.matrices import FACTORS_ALONE
 from modalkit.study.strict import rising
 from updating.models import Spec
-from updating.models.decks import KNOWN, DeckModel, deck_matrices
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, Names, read_matrix
+from updating.models.imported.decks import KNOWN, DeckModel, deck_matrices
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends, same_as
 from updating.models.imported.read import KINDS
 from updating.models.imported.units import SI, matrix_in_si

@@ -10,7 +10,7 @@ from updating.effects.box import Place
 from updating.effects.mechanism import Channel
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import on_basis, region_centre
-from updating.models.decks.states import deck_state
+from updating.models.deck_states import deck_state
 from updating.models.fields import Sparse
 from updating.models.imported.hypothesis import Hypothesis
 from updating.models.spec import Spec

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from updating.models.base import Structure
-from updating.models.imported.structure import ImportedStructure
+from updating.models.imported_structure import ImportedStructure
 from updating.models.spec import Spec
 from updating.models.structure import build_field_structure
 

@@ -18,7 +18,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import ModalkitError
 from updating.models.base import Structure, Term, added
 from updating.models.fields import Fields, Sparse
-from updating.models.imported.structure import ImportedStructure
+from updating.models.imported_structure import ImportedStructure
 from updating.models.reduced import Reduced
 from updating.models.state import State
 from updating.models.structure import FieldStructure

@@ -11,7 +11,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.models import build_structure
-from updating.models.decks.states import deck_answers
+from updating.models.deck_states import deck_answers
 from updating.models.structure import FieldStructure
 from updating.nominal import predictor_of
 from updating.prediction.matching import pair_modes

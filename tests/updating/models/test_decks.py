@@ -19,14 +19,14 @@ from acquisition.errors import StudyError
 from updating import Axes, Case, Material, Spec, Tolerances, build_structure, measured_from_modes
 from updating.models import Region
 from updating.models.base import Structure
-from updating.models.decks import cache as deck_cache
-from updating.models.decks import deck_matrices, parameter_matrices, program, read_deck_model
-from updating.models.decks import imported as made_of
-from updating.models.decks.cards import read_cards
-from updating.models.decks.model import DeckModel
-from updating.models.decks.states import deck_answers, deck_state
+from updating.models.deck_states import deck_answers, deck_state
 from updating.models.fields import Sparse
 from updating.models.imported import Imported
+from updating.models.imported.decks import cache as deck_cache
+from updating.models.imported.decks import deck_matrices, parameter_matrices, program, read_deck_model
+from updating.models.imported.decks.cards import read_cards
+from updating.models.imported.decks.model import DeckModel
+from updating.models.imported.of_deck import imported as made_of
 from updating.models.reduction import reduce_structure
 from updating.models.state import State
 from updating.models.whole import Whole

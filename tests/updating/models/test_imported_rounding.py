@@ -16,7 +16,7 @@ from updating.models import build_structure
 from updating.models.fields import Sparse
 from updating.models.imported import read_imported
 from updating.models.imported.rounding import decimal_rounding
-from updating.models.imported.structure import ImportedStructure
+from updating.models.imported_structure import ImportedStructure
 from updating.models.reduction import reduce_structure
 from updating.models.state import NOMINAL
 

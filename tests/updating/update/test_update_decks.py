@@ -15,8 +15,8 @@ from acquisition import ModalData
 from acquisition.errors import StudyError
 from updating import Axes, Case, Material, Spec, Tolerances, measured_from_modes
 from updating.models import Region
-from updating.models.decks import imported as made_of
-from updating.models.decks import read_deck_model
+from updating.models.imported.decks import read_deck_model
+from updating.models.imported.of_deck import imported as made_of
 from updating.update import Update, update
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "calculix"

@@ -16,7 +16,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.models.absorbers import Absorber
 from updating.models.fields import Sparse
-from updating.models.imported.structure import ImportedStructure
+from updating.models.imported_structure import ImportedStructure
 from updating.models.reduced import Reduced
 from updating.models.state import NOMINAL, Loss, State
 from updating.prediction.predict import Predictor

@@ -33,7 +33,7 @@ from updating.models.absorbers import structural
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.matrices import Imported
-from updating.models.imported.structure import ImportedStructure
+from updating.models.imported_structure import ImportedStructure
 from updating.models.spec import Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor

@@ -13,7 +13,7 @@ from updating.models.imported.checks import symmetric
 from updating.models.imported.shifted import Shifted
 
 if TYPE_CHECKING:
-    from updating.models.decks import DeckParameter
+    from updating.models.imported.decks import DeckParameter
 
 SAME = 1e-9
 """A change below this share of the matrix's largest entry is rounding of the file's digits [-]."""

@@ -29,7 +29,7 @@ from updating.models.imported.rigid import free_motions, rank, without_forces
 from updating.models.imported.rounding import decimal_rounding, relative_rounding
 
 if TYPE_CHECKING:
-    from updating.models.decks.model import DeckModel
+    from updating.models.imported.decks.model import DeckModel
 
 
 @dataclass(frozen=True, eq=False)

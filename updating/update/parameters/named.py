@@ -9,7 +9,7 @@ import numpy as np
 
 from acquisition.errors import StudyError
 from updating.effects import LIBRARY, Effect
-from updating.models.decks import KNOWN, DeckParameter
+from updating.models.imported.decks import KNOWN, DeckParameter
 from updating.models.parts import Region
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor

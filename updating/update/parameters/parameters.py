@@ -10,8 +10,8 @@ import numpy as np
 
 from updating.effects import LIBRARY
 from updating.models.damping import WHOLE
-from updating.models.decks import DeckParameter
-from updating.models.decks.states import deck_state
+from updating.models.deck_states import deck_state
+from updating.models.imported.decks import DeckParameter
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 

@@ -11,10 +11,10 @@ from scipy.spatial import KDTree
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.models.decks.cards import Card, Cards, number_word
-from updating.models.decks.mesh import Mesh, edges_of, family_of
-from updating.models.decks.regions import cells_of
 from updating.models.imported.deck import Deck
+from updating.models.imported.decks.cards import Card, Cards, number_word
+from updating.models.imported.decks.mesh import Mesh, edges_of, family_of
+from updating.models.imported.decks.regions import cells_of
 
 AXES = ("x", "y", "z")
 

@@ -1,21 +1,19 @@
 """Decks as models: CalculiX makes the matrices, of all, of each element set, and for other numbers in it."""
 
-from updating.models.decks.imported import imported
-from updating.models.decks.model import (
+from updating.models.imported.decks.model import (
     KNOWN,
     DeckModel,
     deck_matrices,
     parameter_matrices,
     read_deck_model,
 )
-from updating.models.decks.parameters import DeckParameter
+from updating.models.imported.decks.parameters import DeckParameter
 
 __all__ = [
     "KNOWN",
     "DeckModel",
     "DeckParameter",
     "deck_matrices",
-    "imported",
     "parameter_matrices",
     "read_deck_model",
 ]

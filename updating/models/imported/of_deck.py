@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from updating.models.decks.model import DeckModel
+from updating.models.imported.decks.model import DeckModel
 from updating.models.imported.matrices import Imported
 from updating.models.imported.units import places_in_si
 

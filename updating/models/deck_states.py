@@ -8,10 +8,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.models.decks.model import DeckModel
-from updating.models.decks.parameters import DeckParameter
 from updating.models.fields import Sparse
-from updating.models.imported.structure import ImportedStructure
+from updating.models.imported.decks.model import DeckModel
+from updating.models.imported.decks.parameters import DeckParameter
+from updating.models.imported_structure import ImportedStructure
 from updating.models.reduced import Reduced
 from updating.models.state import NOMINAL, State
 

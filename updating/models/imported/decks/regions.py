@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from acquisition.errors import StudyError
-from updating.models.decks.cards import Card, Cards, card
-from updating.models.decks.mesh import MODULI, OF_MATERIAL, SECTIONS, Mesh
+from updating.models.imported.decks.cards import Card, Cards, card
+from updating.models.imported.decks.mesh import MODULI, OF_MATERIAL, SECTIONS, Mesh
 
 NEXT_TO_NOTHING = 1e-12
 """Factor on modulus and density of what is left out of a part: the rows stay, the matrices vanish [-]."""

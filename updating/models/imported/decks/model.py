@@ -8,14 +8,14 @@ from functools import cached_property
 from pathlib import Path
 
 from acquisition.errors import StudyError
-from updating.models.decks.cards import Cards, read_cards, text_of
-from updating.models.decks.mesh import Mesh, family_of
-from updating.models.decks.parameters import DeckParameter, parameter_of
-from updating.models.decks.program import Stored, stored
-from updating.models.decks.regions import Division, divide
 from updating.models.fields import Sparse
 from updating.models.imported.checks import symmetric
 from updating.models.imported.deck import Deck, read_deck
+from updating.models.imported.decks.cards import Cards, read_cards, text_of
+from updating.models.imported.decks.mesh import Mesh, family_of
+from updating.models.imported.decks.parameters import DeckParameter, parameter_of
+from updating.models.imported.decks.program import Stored, stored
+from updating.models.imported.decks.regions import Division, divide
 from updating.models.imported.elements import Elements
 from updating.models.imported.nodes import NodeTable, deck_table
 from updating.models.imported.units import SI, matrix_in_si, units_of

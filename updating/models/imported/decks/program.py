@@ -16,9 +16,9 @@ import numpy as np
 
 from acquisition.arrays import IntArray
 from acquisition.errors import StudyError
-from updating.models.decks.cache import kept
 from updating.models.fields import Sparse
 from updating.models.imported.calculix import read_dofs, read_triplets
+from updating.models.imported.decks.cache import kept
 
 STEP = "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n1\n*END STEP\n"
 """What makes CalculiX write its matrices and stop before it solves anything."""

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.errors import StudyError
-from updating.models.decks.cards import Card, Cards
+from updating.models.imported.decks.cards import Card, Cards
 
 SECTIONS = ("*SOLID SECTION", "*SHELL SECTION", "*BEAM SECTION", "*MEMBRANE SECTION")
 """Cards that give elements a material."""
