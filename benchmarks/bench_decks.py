@@ -76,7 +76,18 @@ def measure(n: int) -> dict[str, float]:
         step("parts")
     regions = tuple(Region(r.name, (0.0, 1.0)) for r in model.division.regions)
     structure = build_structure(
-        Spec("matrices", *SIZE, (), (), "imported", Material(1.0, 1.0), regions, imported=imported)
+        Spec(
+            "matrices",
+            length=SIZE[0],
+            width=SIZE[1],
+            thickness=SIZE[2],
+            elements=(),
+            clamped=(),
+            theory="imported",
+            material=Material(1.0, 1.0),
+            regions=regions,
+            imported=imported,
+        )
     )
     structure.solve(np.ones((structure.n_dofs, 1)), 0.0)
     step("factor")

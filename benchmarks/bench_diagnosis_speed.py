@@ -39,8 +39,8 @@ def plate_case(*, single: bool) -> Case:
     """Return a test of the plate with a soft place at its root, and a calibration that is off as well."""
     rng = np.random.default_rng(4)
     spec = Spec(
-        "plate", 0.376, 0.2, 0.002, (38, 20), ("x0",), "kirchhoff", Material(210e9, 7850.0, 0.3),
-        damping=Damping(1.0, 5e-7),
+        "plate", length=0.376, width=0.2, thickness=0.002, elements=(38, 20), clamped=("x0",),
+        theory="kirchhoff", material=Material(210e9, 7850.0, 0.3), damping=Damping(1.0, 5e-7),
     )  # fmt: skip
     body = Body("plate", 0.376, 0.2, 0.002, 211e9, 7850.0, 0.3, ("x0",))
     x, y = np.meshgrid([0.08, 0.15, 0.22, 0.3, 0.37], [0.005, 0.07, 0.13, 0.195], indexing="ij")
@@ -57,7 +57,7 @@ def plate_case(*, single: bool) -> Case:
         scene = CAUSES["calibration_gain"].act(scene, {"gain": 0.7})
     marks = draw_marks(rng, rig)
     test = measure(scene.specimen, solve(scene.specimen.body), scene.faults, marks, rng, np.ones(60))
-    return Case("plate", spec, test, None, doubts)
+    return Case("plate", spec, test, baseline=None, tolerances=doubts)
 
 
 def counted(case: Case) -> tuple[Any, tuple[float, float], Counter[int]]:

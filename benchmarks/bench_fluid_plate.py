@@ -30,12 +30,28 @@ Array = NDArray[np.float64]
 def plate() -> Predictor:
     """Return paper A's plate, dry."""
     spec = Spec(
-        "plate", LENGTH, WIDTH, THICKNESS, (38, 20), ("x0",), "kirchhoff", Material(210e9, 7850.0, 0.3)
+        "plate",
+        length=LENGTH,
+        width=WIDTH,
+        thickness=THICKNESS,
+        elements=(38, 20),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=Material(210e9, 7850.0, 0.3),
     )
     one, points = np.ones((1, 1)), np.array([[LENGTH, WIDTH]])
     nothing = Measured(
-        *(np.array([100.0]), np.array([0.1]), np.array([0.01]), np.array([0.001])),
-        *(points, (1,), np.zeros(1, dtype=int), np.zeros(1, dtype=int), one, one, True),
+        frequency=np.array([100.0]),
+        frequency_sigma=np.array([0.1]),
+        damping=np.array([0.01]),
+        damping_sigma=np.array([0.001]),
+        points=points,
+        nodes=(1,),
+        seen=np.zeros(1, dtype=int),
+        hit=np.zeros(1, dtype=int),
+        constants=one,
+        constants_sigma=one,
+        absolute=True,
     )
     return Predictor(spec, nothing)
 

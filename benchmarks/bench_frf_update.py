@@ -76,9 +76,18 @@ def blank(spec: Spec, points: np.ndarray, count: int) -> Measured:
     ends = np.full(n, n - 1), np.arange(n)
     ones = np.ones((n, count))
     return Measured(
-        np.linspace(50, 1000, count), nothing, nothing, nothing, points[:, : spec.dim], tuple(range(1, n + 1)), *ends,
-        ones, ones, absolute=True,
-    )  # fmt: skip
+        frequency=np.linspace(50, 1000, count),
+        frequency_sigma=nothing,
+        damping=nothing,
+        damping_sigma=nothing,
+        points=points[:, : spec.dim],
+        nodes=tuple(range(1, n + 1)),
+        seen=ends[0],
+        hit=ends[1],
+        constants=ones,
+        constants_sigma=ones,
+        absolute=True,
+    )
 
 
 def damped(rng: np.random.Generator, theory: bool) -> Damped:
@@ -151,7 +160,9 @@ def test_of(drawn: Damped, rng: np.random.Generator, noise: float) -> tuple[Case
     stated = {"repeatability": REMOUNTING, "position_sigma": 0.0, "calibration": 1e-3}
     measured = measured_from_identified(model, Axes(), case.spec, **stated)
     tolerances = Tolerances({"E": TOLERANCE, "density": TOLERANCE})
-    return Case("specimen", case.spec, measured, None, tolerances), measured_frfs(model, measured)
+    return Case("specimen", case.spec, measured, baseline=None, tolerances=tolerances), measured_frfs(
+        model, measured
+    )
 
 
 def recovered(seed: int, *, theory: bool = False) -> tuple[Damped, FrfUpdate, np.ndarray]:
@@ -214,7 +225,16 @@ def plate(logs: np.ndarray) -> Spec:
     )
     damping = Damping(2.0, 2e-6)
     return Spec(
-        "plate", 0.376, 0.2, 0.003175, (38, 20), ("x0",), "kirchhoff", STEEL, regions, damping=damping
+        "plate",
+        length=0.376,
+        width=0.2,
+        thickness=0.003175,
+        elements=(38, 20),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=STEEL,
+        regions=regions,
+        damping=damping,
     )
 
 
@@ -241,7 +261,9 @@ def plate_case() -> tuple[Case, MeasuredFrfs, np.ndarray]:
         repeatability=0.0,
     )
     frfs = MeasuredFrfs(s, h + sigma * (noise[0] + 1j * noise[1]), sigma**2 + 0 * h.real, test.seen, test.hit)
-    case = Case("plate", plate(np.zeros(15)), measured, None, Tolerances({"E": TOLERANCE}))
+    case = Case(
+        "plate", plate(np.zeros(15)), measured, baseline=None, tolerances=Tolerances({"E": TOLERANCE})
+    )
     return case, frfs, logs
 
 

@@ -28,8 +28,28 @@ from updating.localisation.force_residual import region_parts
 from updating.models.state import Loss, State
 
 STEEL = Material(210e9, 7850.0, 0.3)
-BEAM = Spec("beam", 0.376, 0.0305, 0.0047625, (20,), ("x0",), "timoshenko", STEEL, damping=Damping(2.0, 1e-6))
-PLATE = Spec("plate", 0.376, 0.2, 0.003175, (10, 6), ("x0",), "kirchhoff", STEEL, damping=Damping(2.0, 1e-6))
+BEAM = Spec(
+    "beam",
+    length=0.376,
+    width=0.0305,
+    thickness=0.0047625,
+    elements=(20,),
+    clamped=("x0",),
+    theory="timoshenko",
+    material=STEEL,
+    damping=Damping(2.0, 1e-6),
+)
+PLATE = Spec(
+    "plate",
+    length=0.376,
+    width=0.2,
+    thickness=0.003175,
+    elements=(10, 6),
+    clamped=("x0",),
+    theory="kirchhoff",
+    material=STEEL,
+    damping=Damping(2.0, 1e-6),
+)
 DOUBTS = {"E": 0.01, "density": 0.003, "thickness": 0.005, "length": 0.002, "width": 0.002}
 NOISE = {"frequency": 1e-3, "damping": 0.05, "constants": 0.01, "level": 0.02}
 SCATTER = 0.2  # of damping from mode to mode
@@ -50,8 +70,9 @@ def asked(spec: Spec, modes: int) -> Measured:
     n, ones = len(points), np.ones(modes)
     every = np.ones((n, modes))
     return Measured(
-        ones, ones, ones, ones, points, tuple(range(1, n + 1)), np.full(n, n - 1), np.arange(n), every, every,
-        absolute=True,
+        frequency=ones, frequency_sigma=ones, damping=ones, damping_sigma=ones, points=points,
+        nodes=tuple(range(1, n + 1)), seen=np.full(n, n - 1), hit=np.arange(n), constants=every,
+        constants_sigma=every, absolute=True,
     )  # fmt: skip
 
 

@@ -142,14 +142,14 @@ def case_of(dofs: int, regions: int, points: int):
     places = tuple(Region(name, (0.0, 1.0), (0.0, 1.0)) for name in parts)
     spec = Spec(
         "matrices",
-        LENGTH / 2,
-        WIDTH,
-        LENGTH / 2,
-        (),
-        (),
-        "imported",
-        Material(1.0, 1.0),
-        places,
+        length=LENGTH / 2,
+        width=WIDTH,
+        thickness=LENGTH / 2,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1.0, 1.0),
+        regions=places,
         imported=imported,
     )
     return spec, frfs, (0.6 * frequency[0], top), parts[soft]
@@ -191,7 +191,7 @@ def measure(dofs: int, regions: int, points: int, profile: Path | None = None) -
         answer = diagnose(Case("angle", spec, test), progress=next_step)
         next_step("update")
         doubts = Tolerances({"E": 0.01, "density": 0.003})
-        case = Case("angle", spec, test, None, doubts)
+        case = Case("angle", spec, test, baseline=None, tolerances=doubts)
         names = [f"{region.name}.E" for region in spec.regions]
         updated = update(case, parameters=names, data=("frequencies", "shapes"))
         next_step("end")

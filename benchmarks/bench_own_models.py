@@ -178,7 +178,18 @@ def imported_spec(made: Structure, regions: list[str]) -> Spec:
 
 def matrices(imported: Imported, regions: tuple[Region, ...]) -> Spec:
     return Spec(
-        "matrices", 1.0, 1.0, 1.0, (), (), "imported", Material(1.0, 1.0), regions, (), Damping(), imported
+        "matrices",
+        length=1.0,
+        width=1.0,
+        thickness=1.0,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1.0, 1.0),
+        regions=regions,
+        masses=(),
+        damping=Damping(),
+        imported=imported,
     )
 
 
@@ -254,7 +265,7 @@ def tested(specimen: Specimen, rng: np.random.Generator) -> tuple[Measured, Meas
     whole = measured_from_identified(model, Axes(), specimen.spec, **options)
     modal = replace(model.modal, shape_sigma=None, scaled=False)
     shaped = measured_from_modes(modal, Axes(), specimen.spec, repeatability=REMOUNTING, position_sigma=0.0)
-    bare = ModalData(modal.frequency, modal.frequency_sigma)
+    bare = ModalData(frequency=modal.frequency, frequency_sigma=modal.frequency_sigma)
     return whole, shaped, measured_from_modes(bare, Axes(), specimen.spec, repeatability=REMOUNTING)
 
 
@@ -297,7 +308,7 @@ def run(kind: Callable[..., Specimen], seed: int, only: str = "") -> dict[str, t
         for name, test in pairs:
             if name.endswith("constants") == level and only in ("", name):
                 data = ("frequencies", *(key for key in ("shapes", "constants") if f"and {key}" in name))
-                case = Case(name, specimen.spec, test, None, doubts)
+                case = Case(name, specimen.spec, test, baseline=None, tolerances=doubts)
                 found[name] = specimen, update(case, parameters=specimen.names, data=data)
     return found
 

@@ -111,13 +111,13 @@ def draw(rng: np.random.Generator, *, level: bool = False) -> Specimen:
     finer = (36, 18) if plate else (84,)
     spec = Spec(
         "plate" if plate else "beam",
-        length,
-        width,
-        thickness,
-        elements,
-        ("x0",) if rng.integers(2) else (),
-        "kirchhoff" if plate else "euler-bernoulli",
-        material,
+        length=length,
+        width=width,
+        thickness=thickness,
+        elements=elements,
+        clamped=("x0",) if rng.integers(2) else (),
+        theory="kirchhoff" if plate else "euler-bernoulli",
+        material=material,
         regions=regions,
     )
     names = [f"{r.name}.E" for r in regions]
@@ -201,9 +201,15 @@ def test_of(specimen: Specimen, rng: np.random.Generator, *, blind: bool = False
         calibration=CALIBRATION,
     )
     if blind:
-        modes = ModalData(model.modal.frequency, model.modal.frequency_sigma)
+        modes = ModalData(frequency=model.modal.frequency, frequency_sigma=model.modal.frequency_sigma)
         measured = measured_from_modes(modes, Axes(), specimen.spec, repeatability=REMOUNTING)
-    return Case("specimen", specimen.spec, measured, None, Tolerances({"E": TOLERANCE, "density": TOLERANCE}))
+    return Case(
+        "specimen",
+        specimen.spec,
+        measured,
+        baseline=None,
+        tolerances=Tolerances({"E": TOLERANCE, "density": TOLERANCE}),
+    )
 
 
 def pulls(specimen: Specimen, result: Update) -> np.ndarray:

@@ -35,7 +35,17 @@ REGIONS = tuple(
     for i in range(ALONG)
     for j in range(ACROSS)
 )
-PLATE = Spec("plate", 0.376, 0.2, 0.003175, (38, 20), ("x0",), "kirchhoff", STEEL, regions=REGIONS)
+PLATE = Spec(
+    "plate",
+    length=0.376,
+    width=0.2,
+    thickness=0.003175,
+    elements=(38, 20),
+    clamped=("x0",),
+    theory="kirchhoff",
+    material=STEEL,
+    regions=REGIONS,
+)
 NAMES = tuple(f"{region.name}.E" for region in REGIONS)
 DOUBT = 0.3
 DRAWS = 200
@@ -46,9 +56,9 @@ def plate_case() -> Case:
     """Return the dry plate's published frequencies beside the model in 15 regions."""
     path = Path(__file__).resolve().parents[1] / "sample_data" / "plate_dry" / "modes.csv"
     modes = read_modes(path)
-    data = ModalData(modes.frequency, 1e-4 * modes.frequency)
+    data = ModalData(frequency=modes.frequency, frequency_sigma=1e-4 * modes.frequency)
     test = measured_from_modes(data, Axes(), PLATE)
-    return Case("plate", PLATE, test, None, Tolerances({"E": DOUBT}))
+    return Case("plate", PLATE, test, baseline=None, tolerances=Tolerances({"E": DOUBT}))
 
 
 class Peer:

@@ -55,7 +55,7 @@ MIDDLES = (0.15, 0.5, 0.85)
 """Quantiles tried for parameters of the library that the rig's effect does not have."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Entry:
     """One wrong trial and its cause."""
 
@@ -96,8 +96,9 @@ def entry(trial: Trial, outcome: Outcome) -> Entry:
         check, datum = _worst(found.nothing)
         lead = next(row for row in found.compared if row.names)
         return Entry(
-            trial.index, trial.truth.kind, "none", said, "alarm", check, datum,
-            _score(found.nothing), _score(found.nothing), _score(lead.explanation), found.nothing.p_value,
+            trial=trial.index, kind=trial.truth.kind, truth="none", answer=said, cause="alarm", check=check,
+            datum=datum, truth_score=_score(found.nothing), searched_score=_score(found.nothing),
+            leader_score=_score(lead.explanation), p_value=found.nothing.p_value,
         )  # fmt: skip
     theories = (False, True) if found.both else (False,)
     weighed = (
@@ -108,14 +109,16 @@ def entry(trial: Trial, outcome: Outcome) -> Entry:
     true = max(weighed, key=_known_score)
     if true is None:
         return Entry(
-            trial.index, trial.truth.kind, label(trial.truth.effects), said, "not examined", "", "",
-            -np.inf, -np.inf, _score(leader.explanation), 0.0,
+            trial=trial.index, kind=trial.truth.kind, truth=label(trial.truth.effects), answer=said,
+            cause="not examined", check="", datum="", truth_score=-np.inf, searched_score=-np.inf,
+            leader_score=_score(leader.explanation), p_value=0.0,
         )  # fmt: skip
     cause, searched = _cause(found, leader, true)
     check, datum = _worst(true)
     return Entry(
-        trial.index, trial.truth.kind, label(trial.truth.effects), said, cause, check, datum,
-        _score(true), searched, _score(leader.explanation), true.p_value,
+        trial=trial.index, kind=trial.truth.kind, truth=label(trial.truth.effects), answer=said, cause=cause,
+        check=check, datum=datum, truth_score=_score(true), searched_score=searched,
+        leader_score=_score(leader.explanation), p_value=true.p_value,
     )  # fmt: skip
 
 

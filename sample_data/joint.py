@@ -40,7 +40,16 @@ PLAN = HammerPlan(
 
 def behind() -> tuple[FloatArray, FloatArray]:
     """Return frequencies [Hz] and shapes (n_points, n_modes) [kg^-1/2] for the softest of hits."""
-    spec = Spec("beam", LENGTH, 0.0305, 0.0047625, (53,), ("x0",), "timoshenko", Material(210e9, 7850.0, 0.3))
+    spec = Spec(
+        "beam",
+        length=LENGTH,
+        width=0.0305,
+        thickness=0.0047625,
+        elements=(53,),
+        clamped=("x0",),
+        theory="timoshenko",
+        material=Material(210e9, 7850.0, 0.3),
+    )
     points, nothing = _points(), np.full(1, np.nan)
     n = len(points)
     own_predictor = Measured(

@@ -102,8 +102,26 @@ def rigs() -> tuple[Rig, ...]:
     """Return the four tests of the submerged-structures paper."""
     along = LENGTH * np.arange(1, 6) / 5
     grid = np.array([(x, y) for x in along for y in PLATE_WIDTH * np.arange(5) / 4])
-    beam = Spec("beam", LENGTH, 0.0305, 0.0047625, (53,), ("x0",), "timoshenko", BEAM_STEEL)
-    plate = Spec("plate", LENGTH, PLATE_WIDTH, 0.003175, (26, 14), ("x0",), "kirchhoff", PLATE_STEEL)
+    beam = Spec(
+        "beam",
+        length=LENGTH,
+        width=0.0305,
+        thickness=0.0047625,
+        elements=(53,),
+        clamped=("x0",),
+        theory="timoshenko",
+        material=BEAM_STEEL,
+    )
+    plate = Spec(
+        "plate",
+        length=LENGTH,
+        width=PLATE_WIDTH,
+        thickness=0.003175,
+        elements=(26, 14),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=PLATE_STEEL,
+    )
     tank = {"free_surface": 0.18, "bottom": 0.19}
     around_beam = Environment(WATER, **tank, walls=(0.0, 0.55, 0.01525 - 0.225, 0.01525 + 0.225))
     around_plate = Environment(WATER, **tank, walls=(0.0, 0.55, 0.1 - 0.225, 0.1 + 0.225))

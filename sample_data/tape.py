@@ -101,7 +101,17 @@ def structure(*, taped: bool) -> FieldStructure:
     area, inertia = WIDTH * THICKNESS, WIDTH * THICKNESS**3 / 12
     tape = Region("tape", TAPE, area=TAPE_MASS * area, inertia=TAPE_STIFFNESS * inertia)
     regions = (tape,) if taped else ()
-    spec = Spec("beam", 1.0, WIDTH, THICKNESS, (70,), (), "timoshenko", STEEL, regions=regions)
+    spec = Spec(
+        "beam",
+        length=1.0,
+        width=WIDTH,
+        thickness=THICKNESS,
+        elements=(70,),
+        clamped=(),
+        theory="timoshenko",
+        material=STEEL,
+        regions=regions,
+    )
     built = build_structure(spec)
     assert isinstance(built, FieldStructure)
     return built

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 
 from acquisition.display import Displayed
 from updating.environment import Environment
@@ -41,6 +41,7 @@ class Case(Displayed):
     title: str
     spec: Spec
     measured: Measured
+    _: KW_ONLY
     baseline: Measured | None = None
     tolerances: Tolerances = field(default_factory=Tolerances)
     environment: Environment = field(default_factory=Environment)

@@ -133,13 +133,13 @@ def draw_specimen(
     alpha, beta = _rayleigh(rng, first, last)
     spec = Spec(
         kind,  # type: ignore[arg-type]
-        length,
-        width,
-        thickness,
-        BEAM_MESH if kind == "beam" else PLATE_MESH,
-        edges,
-        theory,  # type: ignore[arg-type]
-        Material(E, density, poisson),
+        length=length,
+        width=width,
+        thickness=thickness,
+        elements=BEAM_MESH if kind == "beam" else PLATE_MESH,
+        clamped=edges,
+        theory=theory,  # type: ignore[arg-type]
+        material=Material(E, density, poisson),
         masses=masses,
         damping=Damping(alpha, beta),
     )

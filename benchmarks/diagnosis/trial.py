@@ -29,7 +29,7 @@ SAME_MASS = ("E", "density", "thickness")
 """What only the absolute level tells apart."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Trial:
     """What is hidden, and the case.
 
@@ -223,10 +223,26 @@ def _trial(
     if specimen.rig.baseline:
         old = replace(specimen, body=before.body)
         baseline = measure(old, before, Faults(), marks, rng, scatter)
-    case = Case("simulated", specimen.spec, test, baseline, specimen.tolerances, specimen.environment)
+    case = Case(
+        "simulated",
+        specimen.spec,
+        test,
+        baseline=baseline,
+        tolerances=specimen.tolerances,
+        environment=specimen.environment,
+    )
     names = tuple(c.name for c in causes)
     severity = "none" if not names else "clear" if size >= 1 else "mild"
-    return Trial(names, values, severity, size, _right(causes, specimen), case, again, specimen)
+    return Trial(
+        names=names,
+        values=values,
+        severity=severity,
+        size=size,
+        right=_right(causes, specimen),
+        case=case,
+        again=again,
+        specimen=specimen,
+    )
 
 
 def _right(causes: list[Cause], specimen: Specimen) -> tuple[tuple[str, ...], ...]:

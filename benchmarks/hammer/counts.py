@@ -11,7 +11,7 @@ from hammer.setups import Setup
 from identification import ModalModel
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Outcome:
     """What became of one test."""
 
@@ -51,10 +51,21 @@ def counted(
         for k in range(len(found)) if k not in theirs
     ]  # fmt: skip
     missed = [float(hertz[r]) for r in np.flatnonzero(out) if r not in mine]
-    inside = int(np.sum(np.abs(f_z) < 1.96)), int(np.sum(np.abs(d_z) < 1.96))
     level = _level(setup, model, mine, theirs) if pairs else np.nan
-    z = [[round(float(z), 2) for z in of] for of in (f_z, d_z)]
-    return Outcome(kind, seed, int(out.sum()), len(pairs), missed, names, *inside, *z, level, cpu)
+    return Outcome(
+        kind=kind,
+        seed=seed,
+        modes=int(out.sum()),
+        found=len(pairs),
+        missed=missed,
+        invented=names,
+        frequency_inside=int(np.sum(np.abs(f_z) < 1.96)),
+        damping_inside=int(np.sum(np.abs(d_z) < 1.96)),
+        frequency_z=[round(float(z), 2) for z in f_z],
+        damping_z=[round(float(z), 2) for z in d_z],
+        level=level,
+        cpu=cpu,
+    )
 
 
 def _level(setup: Setup, model: ModalModel, mine: list[int], theirs: list[int]) -> float:

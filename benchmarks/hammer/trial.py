@@ -47,7 +47,20 @@ def judged(kind: str, seed: int) -> Outcome:
     except EstimationError as error:
         hertz = np.abs(setup.system.poles[out]) / (2 * np.pi)
         print(f"  {kind} {seed}: {error}")
-        return Outcome(kind, seed, int(out.sum()), 0, hertz.tolist(), [], 0, 0, [], [], np.nan, 0.0)
+        return Outcome(
+            kind=kind,
+            seed=seed,
+            modes=int(out.sum()),
+            found=0,
+            missed=hertz.tolist(),
+            invented=[],
+            frequency_inside=0,
+            damping_inside=0,
+            frequency_z=[],
+            damping_z=[],
+            level=np.nan,
+            cpu=0.0,
+        )
     cpu = time.process_time() - began
     if model.levels is not None and setup.at_hit is not None:
         setup = replace(setup, system=setup.at_hit(0, 0, model.levels.level / _recorded(setup, seed)))

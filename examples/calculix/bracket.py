@@ -68,7 +68,15 @@ def modes_of(folder: Path, job: str, count: int) -> tuple[FloatArray, FloatArray
     """Return frequencies [Hz] and mass-normalised shapes at the test's points, from the matrices of a job."""
     imported = read_imported(folder / f"{job}.sti", folder / f"{job}.mas", folder / f"{job}.inp")
     size = imported.extents[1] - imported.extents[0]
-    spec = Spec("matrices", *size.tolist(), (), (), "imported", Material(1.0, 1.0), imported=imported)
+    spec = Spec(
+        "matrices",
+        **dict(zip(("length", "width", "thickness"), size.tolist(), strict=True)),
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1.0, 1.0),
+        imported=imported,
+    )
     structure = build_structure(spec)
     values, vectors = structure.eigen(count)
     points = np.array([where for where, _ in PLACES.values()])

@@ -85,7 +85,15 @@ def modes_of(path: Path, count: int) -> tuple[FloatArray, FloatArray]:
     """Return frequencies [Hz] and mass-normalised shapes at the test's points of a deck."""
     imported = made_of(read_deck_model(path, units="mm-t-s"), divided=False)
     size = imported.extents[1] - imported.extents[0]
-    spec = Spec("matrices", *size.tolist(), (), (), "imported", Material(1.0, 1.0), imported=imported)
+    spec = Spec(
+        "matrices",
+        **dict(zip(("length", "width", "thickness"), size.tolist(), strict=True)),
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1.0, 1.0),
+        imported=imported,
+    )
     structure = build_structure(spec)
     values, vectors = structure.eigen(count)
     points = np.array([where for where, _ in POINTS.values()]) / 1000

@@ -159,4 +159,13 @@ def _shapes(plan: Arrangement, factors: Factors, *, scaled: bool, warnings: tupl
     shapes, angle = turned(factors.long)
     sigma = np.sqrt(factors.own + np.sum(np.abs(factors.common) ** 2, axis=1))
     common = factors.common * np.exp(1j * angle)
-    return Shapes(plan.rows, shapes, sigma, scaled, warnings, factors.own, common, angle)
+    return Shapes(
+        dofs=plan.rows,
+        shapes=shapes,
+        sigma=sigma,
+        scaled=scaled,
+        warnings=warnings,
+        own=factors.own,
+        common=common,
+        phase=angle,
+    )

@@ -12,7 +12,7 @@ from acquisition.dof import Dof
 from acquisition.modal_data import ModalData
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Shapes(Displayed):
     """Mode shapes of the measured degrees of freedom.
 

@@ -24,7 +24,8 @@ from updating.effects.limits import PLACES
 from updating.models.named_factors import departure
 from updating.models.spec import Spec
 from updating.models.state import State
-from updating.prediction.matching import Paired, mac_of_constants, pair_modes
+from updating.prediction.assignment import mac_of_constants
+from updating.prediction.matching import Paired, pair_modes
 from updating.prediction.predict import Predictor
 
 FACTORS = ("E", "density", "thickness", "length", "width")

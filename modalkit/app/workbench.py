@@ -15,7 +15,8 @@ from identification.pole_reasons import Origins, pole_origins
 from modalkit.app.digests import digest_of
 from modalkit.app.doing import Doing
 from modalkit.app.kept import Kept
-from modalkit.study.read import Study, UpdateTable
+from modalkit.study.read import Study
+from modalkit.study.tables import UpdateTable
 from modalkit.workflow.case import Session, modes_in_band, open_study, processing_of
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.files import read_files

@@ -14,7 +14,7 @@ from modalkit.blind.trial import Truth
 from modalkit.output.whole import plain
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome:
     """One trial, opened.
 

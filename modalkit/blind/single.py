@@ -64,4 +64,13 @@ def run_trial(
     truth = Truth.from_json(open_seal(sealed, commitment))
     if answer is not None:
         shrinkage = true_shrinkage(trial, answer)
-    return Outcome(index, truth, answer, document, failure, sealed, seconds, shrinkage)
+    return Outcome(
+        index=index,
+        truth=truth,
+        answer=answer,
+        document=document,
+        failure=failure,
+        sealed=sealed,
+        seconds=seconds,
+        shrinkage=shrinkage,
+    )

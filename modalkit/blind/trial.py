@@ -35,7 +35,7 @@ _ATTEMPTS = 5000
 _EVERYTHING = DrawRanges()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Truth:
     """What is hidden in one trial.
 

@@ -37,6 +37,3 @@ def localisation_document(found: Localisation) -> LocalisationDocument:
         ],
         agreement={"region": found.regions[best], "methods": count, "kendall_w": found.concordance},
     )
-
-
-__all__ = ["localisation_document"]

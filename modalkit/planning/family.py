@@ -18,7 +18,7 @@ Values = Mapping[str, Any]
 """Values of an effect's parameters, and the names of places, under the contract's names [SI]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Family:
     """One kind of effect as a curve, or for each of its places a curve, in the space of the data.
 
@@ -122,12 +122,12 @@ def factor(name: str, noun: str, *, most: float, clear: float) -> Family:
     """
     end = float(np.log(most))
     return Family(
-        name,
-        lambda q, _: {"factor": float(np.exp(q))},
-        -end,
-        end,
-        clear,
-        f"{noun} off by more than",
-        per_cent,
+        name=name,
+        values=lambda q, _: {"factor": float(np.exp(q))},
+        low=-end,
+        high=end,
+        clear=clear,
+        words=f"{noun} off by more than",
+        amount=per_cent,
         always=True,
     )

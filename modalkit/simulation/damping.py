@@ -20,8 +20,9 @@ def damped_spec(study: Study, session: Session | None) -> tuple[Spec, tuple[str,
     if session is None:
         nothing = np.zeros(0)
         blank = Measured(
-            nothing, nothing, nothing, nothing, np.zeros((0, spec.dim)), (), np.zeros(0, int), np.zeros(0, int),
-            np.zeros((0, 0)), np.zeros((0, 0)), absolute=False,
+            frequency=nothing, frequency_sigma=nothing, damping=nothing, damping_sigma=nothing,
+            points=np.zeros((0, spec.dim)), nodes=(), seen=np.zeros(0, int), hit=np.zeros(0, int),
+            constants=np.zeros((0, 0)), constants_sigma=np.zeros((0, 0)), absolute=False,
         )  # fmt: skip
         predictor = Predictor(spec, blank)
     else:

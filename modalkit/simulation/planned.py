@@ -100,7 +100,8 @@ def _blank(
     chosen = np.arange(len(points)) if hit is None else np.array(hit)
     n, none = len(chosen), np.zeros(0)
     return Measured(
-        none, none, none, none, points, nodes, np.full(n, sensor), chosen, np.zeros((n, 0)), np.zeros((n, 0)),
+        frequency=none, frequency_sigma=none, damping=none, damping_sigma=none, points=points, nodes=nodes,
+        seen=np.full(n, sensor), hit=chosen, constants=np.zeros((n, 0)), constants_sigma=np.zeros((n, 0)),
         absolute=True, directions=directions,
     )  # fmt: skip
 

@@ -199,7 +199,7 @@ class Setup:
     def made(self) -> Body:
         """The body made to the drawing, without its sensor: that of the drawing, or one of bricks, or of more."""
         if self.kind in ("ribbed", "bracket"):
-            return Block(self.kind, **_drawn(self), breadth=self.breadth, height=self.height)
+            return Block(kind=self.kind, **_drawn(self), breadth=self.breadth, height=self.height)
         if self.kind != "solid":
             return self.nominal
         return Solid("beam", **_drawn(self))
@@ -245,7 +245,7 @@ def bare_body(setup: Setup) -> Body:
         return Frame(**_drawn(setup), breadth=setup.breadth, rungs=setup.rungs)
     if setup.kind in ("ribbed", "bracket"):
         sizes: dict[str, Any] = {"breadth": setup.breadth, "height": setup.height}
-        return Block(setup.kind, **_drawn(setup), **sizes, elements=setup.elements[0])
+        return Block(kind=setup.kind, **_drawn(setup), **sizes, elements=setup.elements[0])
     kind: type[Plate] | type[Beam] = Plate if setup.kind == "plate" else Beam
     return kind(**_drawn(setup))
 

@@ -104,17 +104,17 @@ def spec_of(
     size = np.maximum(high - low, 1e-6 * max(float((high - low).max()), 1e-9))
     return Spec(
         "matrices",
-        float(size[0]),
-        float(size[1]),
-        float(size[2]),
-        (),
-        (),
-        "imported",
-        material,
-        regions,
-        tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
-        damping,
-        imported,
+        length=float(size[0]),
+        width=float(size[1]),
+        thickness=float(size[2]),
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=material,
+        regions=regions,
+        masses=tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
+        damping=damping,
+        imported=imported,
     )
 
 

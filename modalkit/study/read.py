@@ -27,17 +27,6 @@ if TYPE_CHECKING:
     from updating.test_data.axes import Axes
     from updating.tolerances import Tolerances
 
-__all__ = [
-    "MATRICES_ONLY",
-    "EnvironmentTable",
-    "MeasurementTable",
-    "ModelTable",
-    "Study",
-    "TolerancesTable",
-    "UpdateTable",
-    "read_study",
-    "study_of",
-]
 
 NOTHING = 1e-9
 """Tolerances below this are none: their squares, and one over them, are no use as numbers [-]."""
@@ -139,16 +128,16 @@ class Study(Strict):
         assert model.thickness is not None
         spec = Spec(
             model.type,
-            model.length,
-            model.width,
-            model.thickness,
-            self._elements(model),
-            tuple(model.clamped),
-            model.theory or ("euler-bernoulli" if model.type == "beam" else "kirchhoff"),  # type: ignore[arg-type]
-            Material(model.material.E, model.material.density, model.material.poisson),
-            tuple(Region(**region.model_dump(exclude={"set"})) for region in model.region),
-            tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
-            _damping(model),
+            length=model.length,
+            width=model.width,
+            thickness=model.thickness,
+            elements=self._elements(model),
+            clamped=tuple(model.clamped),
+            theory=model.theory or ("euler-bernoulli" if model.type == "beam" else "kirchhoff"),  # type: ignore[arg-type]
+            material=Material(model.material.E, model.material.density, model.material.poisson),
+            regions=tuple(Region(**region.model_dump(exclude={"set"})) for region in model.region),
+            masses=tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
+            damping=_damping(model),
         )
         check_places(spec)
         return spec

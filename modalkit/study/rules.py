@@ -35,6 +35,3 @@ def read_rules(path: Path | str) -> DecisionRules:
         return DecisionRules(**content)
     except InputError as error:
         raise StudyError(f"{path}: {error}") from error
-
-
-__all__ = ["read_rules"]

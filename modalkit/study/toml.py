@@ -34,6 +34,3 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
         raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
     except (ValueError, RecursionError) as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
-
-
-__all__ = ["read_toml"]

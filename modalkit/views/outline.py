@@ -11,7 +11,7 @@ from updating import Case, Diagnosis, Measured
 from updating.models.imported import Imported
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Outline:
     """What is drawn of a structure.
 
@@ -65,7 +65,14 @@ def outline(diagnosis: Diagnosis, case: Case | None) -> Outline:
     zones = [(*r.x, *(r.y or (0.0, width)), found.get(r.name, 0.0)) for r in spec.regions]
     points = np.zeros((len(test.points), 2))
     points[:, : test.points.shape[1]] = test.points
-    return Outline(spec.length, width, zones, points, points[list(test.sensors)], spec.clamped)
+    return Outline(
+        length=spec.length,
+        width=width,
+        zones=zones,
+        points=points,
+        sensors=points[list(test.sensors)],
+        clamped=spec.clamped,
+    )
 
 
 def _imported_outline(imported: Imported, test: Measured) -> Outline:
@@ -76,14 +83,14 @@ def _imported_outline(imported: Imported, test: Measured) -> Outline:
     points = (test.points - low)[:, view]
     first, second = (int(axis) for axis in view)
     return Outline(
-        float(size[0]),
-        float(size[1]),
-        [(0.0, float(size[0]), 0.0, float(size[1]), 1.0)],
-        points,
-        points[list(test.sensors)],
-        (),
-        (first, second),
-        (float(low[first]), float(low[second])),
+        length=float(size[0]),
+        width=float(size[1]),
+        zones=[(0.0, float(size[0]), 0.0, float(size[1]), 1.0)],
+        points=points,
+        sensors=points[list(test.sensors)],
+        clamped=(),
+        view=(first, second),
+        origin=(float(low[first]), float(low[second])),
     )
 
 
@@ -94,7 +101,9 @@ def _from_centres(diagnosis: Diagnosis) -> Outline:
     y = {0.0: (0.0, 0.0)} if flat else _edges([z.center[1] for z in zones])
     cells = [(*x[z.center[0]], *(y[0.0] if flat else y[z.center[1]]), z.probability) for z in zones]
     length, width = max((c[1] for c in cells), default=1.0), max((c[3] for c in cells), default=0.0)
-    return Outline(length, width, cells, np.zeros((0, 2)), np.zeros((0, 2)), ())
+    return Outline(
+        length=length, width=width, zones=cells, points=np.zeros((0, 2)), sensors=np.zeros((0, 2)), clamped=()
+    )
 
 
 def _edges(centres: list[float]) -> dict[float, tuple[float, float]]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from updating.prediction.matching import Paired, mac_of_constants, pair_modes
+from updating.prediction.assignment import mac_of_constants
+from updating.prediction.matching import Paired, pair_modes
 from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
 from updating.test_data.measured import Measured

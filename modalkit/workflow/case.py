@@ -14,7 +14,8 @@ from acquisition import ModalData, StudyError, Windows, read_mat, read_modes
 from acquisition.display import Animated
 from acquisition.warned import prefixed
 from identification import ModalModel, frf_health, level_dependence
-from modalkit.study.read import MeasurementTable, Study, read_study
+from modalkit.study.read import Study, read_study
+from modalkit.study.tables import MeasurementTable
 from modalkit.workflow.files import Progress
 from modalkit.workflow.identification import read_frfs
 from modalkit.workflow.processed import Processed
@@ -93,12 +94,12 @@ def open_study(
         study.name,
         study.spec(),
         test,
-        baseline,
-        study.doubts(),
-        study.surroundings(),
-        study.accepted(),
-        study.since_baseline(),
-        study.baseline_stated(),
+        baseline=baseline,
+        tolerances=study.doubts(),
+        environment=study.surroundings(),
+        accepted=study.accepted(),
+        since_baseline=study.since_baseline(),
+        baseline_stated=study.baseline_stated(),
     )
     own = [w for part in (processed, identified) if part is not None for w in part.warnings]
     own += _health(processed, identified)

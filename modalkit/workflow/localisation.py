@@ -47,6 +47,3 @@ def localise_study(
             title=session.study.name,
             warnings=[*warnings, *session.warnings],
         )
-
-
-__all__ = ["localise_study"]

@@ -44,8 +44,9 @@ class PlannedPoints:
         """Return the test without modes: every point is hit, one is observed."""
         n, none, table = len(self.hit), np.zeros(0), study.test
         return Measured(
-            none, none, none, none, self.points, self.nodes, np.full(n, sensor), np.array(self.hit),
-            np.zeros((n, 0)), np.zeros((n, 0)), absolute=True, calibration=table.calibration,
+            frequency=none, frequency_sigma=none, damping=none, damping_sigma=none, points=self.points,
+            nodes=self.nodes, seen=np.full(n, sensor), hit=np.array(self.hit), constants=np.zeros((n, 0)),
+            constants_sigma=np.zeros((n, 0)), absolute=True, calibration=table.calibration,
             repeatability=table.repeatability, position_sigma=table.position_sigma, title=study.name,
             directions=self.directions,
         )  # fmt: skip

@@ -99,14 +99,25 @@ def _blind_store() -> bytes:
         with Store(path, seed=5, plan=DrawRanges(kinds=("beam",))) as store:
             for index in range(3):
                 truth = Truth(
-                    "beam", ("E",), {"E.factor": 0.98}, (("E",),), True, (), 1.0, "clear", 5.0, (0.3,), (), False, True,
-                    1.0,
+                    kind="beam", effects=("E",), parameters={"E.factor": 0.98}, accepted=(("E",),),
+                    in_library=True, without=(), severity=1.0, level="clear", visibility=5.0, size=(0.3,),
+                    places=(), baseline=False, calibrated=True, gap_percent=1.0,
                 )  # fmt: skip
                 sealed = Seal(seal(truth.to_json()).statement, f"{index:032x}")
                 store.commit(index, sealed.commitment)
                 if index < 2:
                     answer = read_answer(NOTHING)
-                    store.keep(Outcome(index, truth, answer, NOTHING, None, sealed, 0.5))
+                    store.keep(
+                        Outcome(
+                            index=index,
+                            truth=truth,
+                            answer=answer,
+                            document=NOTHING,
+                            failure=None,
+                            sealed=sealed,
+                            seconds=0.5,
+                        )
+                    )
 
     header, *lines = written("run.jsonl", write).splitlines(keepends=True)
     plain = json.loads(header)

@@ -50,8 +50,10 @@ def _frfs(lines: int = 16) -> FrfSet:
 @functools.cache
 def _modal() -> ModalData:
     return ModalData(
-        np.array([12.5, 31.25]), np.array([0.01, 0.02]), np.array([0.01, 0.02]), np.array([1e-4, 1e-4]),
-        (Dof(1, 3), Dof(2, 3), Dof(3, 3)), RNG.standard_normal((3, 2)) + 0j, None, True, _geometry(),
+        frequency=np.array([12.5, 31.25]), frequency_sigma=np.array([0.01, 0.02]),
+        damping=np.array([0.01, 0.02]), damping_sigma=np.array([1e-4, 1e-4]),
+        dofs=(Dof(1, 3), Dof(2, 3), Dof(3, 3)), shapes=RNG.standard_normal((3, 2)) + 0j, shape_sigma=None,
+        scaled=True, geometry=_geometry(),
     )  # fmt: skip
 
 

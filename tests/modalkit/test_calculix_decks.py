@@ -28,7 +28,17 @@ def example(example_of: Callable[[Path, str], ModuleType]) -> Callable[[str], Mo
 
 def frequencies(folder: Path, job: str, count: int) -> tuple[int, np.ndarray]:
     imported = read_imported(folder / f"{job}.sti", folder / f"{job}.mas", folder / f"{job}.inp")
-    spec = Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), imported=imported)
+    spec = Spec(
+        "matrices",
+        length=1,
+        width=1,
+        thickness=1,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1, 1),
+        imported=imported,
+    )
     structure = build_structure(spec)
     first = structure.rigid_modes
     return first, np.sqrt(structure.eigen(first + count)[0][first:]) / (2 * np.pi)
@@ -141,7 +151,17 @@ def test_a_solid_in_millimetres(example: Callable[[str], ModuleType], tmp_path: 
         tmp_path / "block.sti", tmp_path / "block.mas", path,
         stiffness_parts=parts["sti"], mass_parts=parts["mas"], units="mm-t-s",
     )  # fmt: skip
-    spec = Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), imported=imported)
+    spec = Spec(
+        "matrices",
+        length=1,
+        width=1,
+        thickness=1,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1, 1),
+        imported=imported,
+    )
     found = np.sqrt(build_structure(spec).eigen(6)[0]) / (2 * np.pi)
     assert found == pytest.approx(ccx.frequencies(path, tmp_path / "modes", 6), rel=1e-5)
     bending = 1.8751040687**2 / (2 * np.pi * 0.2**2) * np.sqrt(210e9 * 0.01**2 / 12 / 7850)
@@ -201,7 +221,17 @@ def test_shapes_are_those_that_ccx_prints(example: Callable[[str], ModuleType], 
     run = tmp_path / "run"
     imported = read_imported(run / "block.sti", run / "block.mas", run / "block.inp", units="mm-t-s")
     structure = build_structure(
-        Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), imported=imported)
+        Spec(
+            "matrices",
+            length=1,
+            width=1,
+            thickness=1,
+            elements=(),
+            clamped=(),
+            theory="imported",
+            material=Material(1, 1),
+            imported=imported,
+        )
     )
     _, vectors = structure.eigen(4)
     where = {int(n): p for n, p in zip(imported.nodes.node, imported.nodes.places, strict=True)}

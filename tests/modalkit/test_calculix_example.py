@@ -46,7 +46,17 @@ def plate(example: Callable[[str], ModuleType], tmp_path_factory: pytest.TempPat
 
 def frequencies(folder: Path, job: str, count: int) -> tuple[int, np.ndarray]:
     imported = read_imported(folder / f"{job}.sti", folder / f"{job}.mas", folder / f"{job}.inp")
-    spec = Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), imported=imported)
+    spec = Spec(
+        "matrices",
+        length=1,
+        width=1,
+        thickness=1,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1, 1),
+        imported=imported,
+    )
     structure = build_structure(spec)
     first = structure.rigid_modes
     return first, np.sqrt(structure.eigen(first + count)[0][first:]) / (2 * np.pi)

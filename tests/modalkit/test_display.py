@@ -205,7 +205,9 @@ def test_many_files_take_one_short_line() -> None:
 def test_values_have_the_digits_that_their_deviation_determines() -> None:
     sigmas = (0.006, 0.00028, 0.5, 15.0, 250.0, 0.0096, 0.0, float("nan"))
     assert list(map(decimals, sigmas)) == [3, 5, 1, 0, 0, 3, None, None]
-    modes = modalkit.ModalData(np.array([98.7654321, 1206.298]), np.array([0.02, 0.006]))
+    modes = modalkit.ModalData(
+        frequency=np.array([98.7654321, 1206.298]), frequency_sigma=np.array([0.02, 0.006])
+    )
     for text in (repr(modes), modes._repr_html_()):
         assert "1206.298" in text and "98.765" in text and "0.006" in text
     table = pd.DataFrame({"error [%]": [1.23456789], "sigma [Hz]": [0.5]})

@@ -35,7 +35,14 @@ from updating.update import update
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "howto" / "own_effect.md"
 BEAM = Spec(
-    *("beam", 0.376, 0.0305, 0.0047625, (20,), ("x0",), "timoshenko", Material(210e9, 7850.0)),
+    "beam",
+    length=0.376,
+    width=0.0305,
+    thickness=0.0047625,
+    elements=(20,),
+    clamped=("x0",),
+    theory="timoshenko",
+    material=Material(210e9, 7850.0),
     damping=Damping(2.0, 1e-6),
 )
 
@@ -61,8 +68,16 @@ def case(library: dict[str, Effect]) -> Case:
     x = np.linspace(0.0752, 0.376, 5)
     ones = np.ones(5)
     evaluation = Measured(
-        *(np.array([28.0, 176.0, 493.0, 964.0, 1590.0]), ones, 0.01 * ones, 0.001 * ones),
-        *(x[:, None], (1, 2, 3, 4, 5), np.full(5, 4), np.arange(5), np.ones((5, 5)), np.ones((5, 5))),
+        frequency=np.array([28.0, 176.0, 493.0, 964.0, 1590.0]),
+        frequency_sigma=ones,
+        damping=0.01 * ones,
+        damping_sigma=0.001 * ones,
+        points=x[:, None],
+        nodes=(1, 2, 3, 4, 5),
+        seen=np.full(5, 4),
+        hit=np.arange(5),
+        constants=np.ones((5, 5)),
+        constants_sigma=np.ones((5, 5)),
         absolute=True,
     )
     finer = Predictor(BEAM.with_elements(60), evaluation)

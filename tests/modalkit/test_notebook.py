@@ -43,7 +43,7 @@ def test_modes_show_and_move() -> None:
     moving = data_of(model.animate().page)["space"]["shapes"]["page"]
     assert len(moving["modes"]) == len(model)
     assert data_of(model.modal.animate().page)["space"]["shapes"]["page"] == moving
-    bare = ModalData(np.array([10.0]), np.array([0.1]))
+    bare = ModalData(frequency=np.array([10.0]), frequency_sigma=np.array([0.1]))
     with pytest.raises(InputError, match="no shapes to move"):
         bare.animate()
 

@@ -13,8 +13,28 @@ from updating import Case, Damping, Material, Measured, Predictor, Spec, Toleran
 from updating.prediction.prediction import Prediction
 
 STEEL = Material(210e9, 7850.0, 0.3)
-BEAM = Spec("beam", 0.376, 0.0305, 0.0047625, (40,), ("x0",), "timoshenko", STEEL, damping=Damping(2.0, 1e-6))
-PLATE = Spec("plate", 0.376, 0.2, 0.003175, (12, 8), ("x0",), "kirchhoff", STEEL, damping=Damping(2.0, 1e-6))
+BEAM = Spec(
+    "beam",
+    length=0.376,
+    width=0.0305,
+    thickness=0.0047625,
+    elements=(40,),
+    clamped=("x0",),
+    theory="timoshenko",
+    material=STEEL,
+    damping=Damping(2.0, 1e-6),
+)
+PLATE = Spec(
+    "plate",
+    length=0.376,
+    width=0.2,
+    thickness=0.003175,
+    elements=(12, 8),
+    clamped=("x0",),
+    theory="kirchhoff",
+    material=STEEL,
+    damping=Damping(2.0, 1e-6),
+)
 POINTS = np.linspace(0.0752, 0.376, 5)
 DOUBTS = {"E": 0.01, "density": 0.003, "thickness": 0.005, "length": 0.002, "width": 0.002}
 
@@ -151,16 +171,16 @@ def blank(
     frequency = np.array([0.5 * top, top])
     constants = np.ones((n, 2))
     return Measured(
-        frequency,
-        1e-4 * frequency,
-        np.full(2, 0.01),
-        np.full(2, 0.001),
-        np.asarray(points, dtype=float).reshape(n, 2 if np.ndim(points) == 2 else 1),
-        tuple(range(1, n + 1)),
-        seen,
-        hit,
-        constants,
-        0.01 * constants,
+        frequency=frequency,
+        frequency_sigma=1e-4 * frequency,
+        damping=np.full(2, 0.01),
+        damping_sigma=np.full(2, 0.001),
+        points=np.asarray(points, dtype=float).reshape(n, 2 if np.ndim(points) == 2 else 1),
+        nodes=tuple(range(1, n + 1)),
+        seen=seen,
+        hit=hit,
+        constants=constants,
+        constants_sigma=0.01 * constants,
         absolute=not shapes_only,
     )
 
@@ -193,16 +213,16 @@ def observed(
     level = 0.01 * np.sqrt(np.mean(constants**2, axis=0)) * np.ones_like(constants)
     scatter = np.hypot(1e-4, 5e-4) * rng.standard_normal(len(frequency))
     return Measured(
-        frequency * (1 + scatter),
-        1e-4 * frequency,
-        damping * np.exp(0.03 * rng.standard_normal(len(damping))),
-        0.03 * damping,
-        np.asarray(points, dtype=float).reshape(n, -1),
-        tuple(range(1, n + 1)),
-        np.full(n, sensor % n),
-        np.arange(n),
-        constants + level * rng.standard_normal(constants.shape),
-        level,
+        frequency=frequency * (1 + scatter),
+        frequency_sigma=1e-4 * frequency,
+        damping=damping * np.exp(0.03 * rng.standard_normal(len(damping))),
+        damping_sigma=0.03 * damping,
+        points=np.asarray(points, dtype=float).reshape(n, -1),
+        nodes=tuple(range(1, n + 1)),
+        seen=np.full(n, sensor % n),
+        hit=np.arange(n),
+        constants=constants + level * rng.standard_normal(constants.shape),
+        constants_sigma=level,
         absolute=True,
     )
 

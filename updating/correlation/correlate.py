@@ -15,8 +15,8 @@ from acquisition.quantities import percent
 from updating.case import Case
 from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
 from updating.nominal import predictor_of
-from updating.prediction.assignment import frac_of_constants
-from updating.prediction.matching import mac_of_constants, pair_modes
+from updating.prediction.assignment import frac_of_constants, mac_of_constants
+from updating.prediction.matching import pair_modes
 from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
 from updating.test_data.measured import Measured

@@ -28,8 +28,7 @@ from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
 from updating.effects import Effect
-from updating.prediction.assignment import frac_of_constants
-from updating.prediction.matching import mac_of_constants
+from updating.prediction.assignment import frac_of_constants, mac_of_constants
 from updating.problem.specimen import SpecimenProblem
 from updating.steps import SILENT, Steps
 

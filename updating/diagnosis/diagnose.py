@@ -24,9 +24,9 @@ from updating.prediction.baseline import correct, doubt_in_mass, in_one_chain
 from updating.prediction.matching import Paired, pair_modes
 from updating.prediction.predict import Predictor
 from updating.prediction.suspended import without_suspended
-from updating.problem.gates import theory_error
 from updating.problem.specimen import SpecimenProblem
 from updating.problem.stated_doubts import of_updates_alone
+from updating.problem.theory_error import theory_error
 from updating.steps import SILENT, SingleCause, Steps
 from updating.test_data.same_places import unmatched
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar, Literal, Self
 
@@ -71,6 +71,7 @@ class Parameter:
     low: float
     high: float
     why: str
+    _: KW_ONLY
     log: bool = False
     default: float | None = None
     natural: tuple[str, ...] = ()

@@ -49,12 +49,41 @@ def _chain() -> Imported:
 def chain() -> Spec:
     """Return the specification of a chain of bodies, which stands for imported matrices."""
     regions = Region("root", (0.0, 0.1)), Region("rest", (0.1, 0.3))
-    return Spec("matrices", 0.2, 1e-3, 1e-3, (), (), "imported", STEEL, regions, imported=_chain())
+    return Spec(
+        "matrices",
+        length=0.2,
+        width=1e-3,
+        thickness=1e-3,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=STEEL,
+        regions=regions,
+        imported=_chain(),
+    )
 
 
 SPECIMENS: dict[Kind, Spec] = {
-    "beam": Spec("beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", STEEL),
-    "plate": Spec("plate", 0.376, 0.200, 0.003175, (10, 6), ("x0",), "kirchhoff", STEEL),
+    "beam": Spec(
+        "beam",
+        length=0.376,
+        width=0.0305,
+        thickness=0.0047625,
+        elements=(10,),
+        clamped=("x0",),
+        theory="euler-bernoulli",
+        material=STEEL,
+    ),
+    "plate": Spec(
+        "plate",
+        length=0.376,
+        width=0.200,
+        thickness=0.003175,
+        elements=(10, 6),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=STEEL,
+    ),
 }
 """Steel cantilevers whose priors a list of effects shows."""
 
@@ -74,16 +103,16 @@ def example(kind: Kind) -> Predictor:
     points = points * [1.0, 0.0, 0.0] if kind == "matrices" else points
     two, constants = np.ones(2), np.ones((3, 2))
     measured = Measured(
-        np.array([20.0, 400.0]),
-        two,
-        two,
-        two,
-        points,
-        (1, 2, 3),
-        np.full(3, 2),
-        np.arange(3),
-        constants,
-        constants,
+        frequency=np.array([20.0, 400.0]),
+        frequency_sigma=two,
+        damping=two,
+        damping_sigma=two,
+        points=points,
+        nodes=(1, 2, 3),
+        seen=np.full(3, 2),
+        hit=np.arange(3),
+        constants=constants,
+        constants_sigma=constants,
         absolute=True,
     )
     return Predictor(spec, replace(measured, level=100.0))

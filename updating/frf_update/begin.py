@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.frf_update.stage import Stage
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.prediction import Prediction
 from updating.update.data.specimen import Specimen
 

@@ -18,7 +18,7 @@ from updating.frf_update.stage import nominal
 from updating.frf_update.statistics import StageStatistics, assess, misses, with_misses
 from updating.frf_update.step import Step, identified_ratios, last_steps
 from updating.models.state import NOMINAL, State, combine
-from updating.prediction.matching import mac_of_constants, match
+from updating.prediction.assignment import mac_of_constants, match
 from updating.prediction.predict import Predictor
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.data.specimen import Specimen

@@ -23,7 +23,7 @@ from updating.frf_update.stage import Stage, nominal
 from updating.frf_update.statistics import assess
 from updating.frf_update.step import UNTOLD_RATIO, Step, identified_ratios, last_steps
 from updating.models.state import NOMINAL, State, combine
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.building import build_specimen
 from updating.update.data.specimen import Specimen

@@ -10,7 +10,7 @@ import numpy as np
 from updating.frf_update.solve import Solved
 from updating.frf_update.stage import Stage
 from updating.models.state import State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.update.data.specimen import Specimen
 
 UNTOLD_RATIO = 0.005

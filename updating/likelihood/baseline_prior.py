@@ -29,7 +29,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.hit_scatter import HitScatter, hit_scatter, level_errors, own_variance
 from updating.models.state import State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import measurement_chain

@@ -25,7 +25,7 @@ SCALED = "frf"
 _Array = TypeVar("_Array", FloatArray, BoolArray)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Block:
     """The data of one kind.
 

@@ -117,15 +117,15 @@ class Constants(Quantity):
             residual = residual + np.hstack(by_place)[:, moved] @ view.places
         mode, source = self._labels
         return Block(
-            "frf",
-            residual,
-            variance.ravel(),
-            by.reshape(predicted.size, names),
-            gain,
-            np.hstack(own),
-            mode,
-            source,
-            None if uneven is None else uneven.ravel(),
+            channel="frf",
+            residual=residual,
+            variance=variance.ravel(),
+            factors=by.reshape(predicted.size, names),
+            named=gain,
+            own=np.hstack(own),
+            mode=mode,
+            source=source,
+            idealised=None if uneven is None else uneven.ravel(),
             unseen=self._unseen,
             places=ahead + moved,
         )

@@ -52,7 +52,16 @@ class Dampings(Quantity):
         """The block of a test without such data."""
         none, empty = np.zeros(0), np.zeros((0, 0))
         factors = np.zeros((0, len(self.setting.names)))
-        return Block("damping", none, none, factors, empty, empty, self.rows, judged=none)
+        return Block(
+            channel="damping",
+            residual=none,
+            variance=none,
+            factors=factors,
+            named=empty,
+            own=empty,
+            mode=self.rows,
+            judged=none,
+        )
 
     def _beside(self, view: View) -> Block:
         rows, test, now = self.rows, self.setting.measured, view.now
@@ -67,13 +76,13 @@ class Dampings(Quantity):
             :, : 1 + (doubt > 0)
         ]
         return Block(
-            "damping",
-            np.log(test.damping[rows] / expected),
-            variance,
-            np.zeros((len(rows), len(self.setting.names))),
-            level,
-            np.zeros((len(rows), 0)),
-            rows,
+            channel="damping",
+            residual=np.log(test.damping[rows] / expected),
+            variance=variance,
+            factors=np.zeros((len(rows), len(self.setting.names))),
+            named=level,
+            own=np.zeros((len(rows), 0)),
+            mode=rows,
             judged=self._mounting(now)[rows] ** 2,
         )
 

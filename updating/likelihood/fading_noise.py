@@ -48,13 +48,13 @@ class FadingNoise(Quantity):
         assert fading is not None
         off = (fading.log_ratio - fading.expected(decay)) / fading.sigma(decay)
         return Block(
-            "noise",
-            np.array([np.sign(off) * np.sqrt(self._surprise(off))]),
-            np.ones(1),
-            np.zeros((1, len(self.setting.names))),
-            np.zeros((1, 0)),
-            np.zeros((1, 0)),
-            np.full(1, -1),
+            channel="noise",
+            residual=np.array([np.sign(off) * np.sqrt(self._surprise(off))]),
+            variance=np.ones(1),
+            factors=np.zeros((1, len(self.setting.names))),
+            named=np.zeros((1, 0)),
+            own=np.zeros((1, 0)),
+            mode=np.full(1, -1),
         )
 
     def _surprise(self, off: float) -> float:

@@ -54,8 +54,8 @@ class Frequencies(Quantity):
         residual = np.log(test.frequency / now.frequency)
         modes = np.arange(len(residual))
         return Block(
-            "frequency", residual, variance + left, by, named, np.zeros((len(modes), 0)), modes,
-            idealised=left if left.any() else None,
+            channel="frequency", residual=residual, variance=variance + left, factors=by, named=named,
+            own=np.zeros((len(modes), 0)), mode=modes, idealised=left if left.any() else None,
         )  # fmt: skip
 
     @cached_property

@@ -33,13 +33,13 @@ class Levels(Quantity):
         known = np.isfinite(test.slope)
         uneven = np.where(known, view.doubt.fidelity * slope * level, 0.0)
         return Block(
-            "level",
-            level * np.where(known, test.slope - slope, 0.0),
-            np.where(known, (level * test.slope_sigma) ** 2 + uneven**2 + self._steady**2, 1.0),
-            np.zeros((n, len(self.setting.names))),
-            np.zeros((n, 0)),
-            np.where(known, self._steady, 0.0)[:, None],
-            np.arange(n),
+            channel="level",
+            residual=level * np.where(known, test.slope - slope, 0.0),
+            variance=np.where(known, (level * test.slope_sigma) ** 2 + uneven**2 + self._steady**2, 1.0),
+            factors=np.zeros((n, len(self.setting.names))),
+            named=np.zeros((n, 0)),
+            own=np.where(known, self._steady, 0.0)[:, None],
+            mode=np.arange(n),
             idealised=uneven**2 if view.doubt.fidelity else None,
             judged=np.where(known, self._steady**2, 0.0),
         )

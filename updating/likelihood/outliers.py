@@ -143,6 +143,3 @@ def _groups(comparison: Comparison) -> list[Outlier]:
     groups = [Outlier(mode=m, channel=c) for m, c in sorted(pairs)]
     groups += [Outlier(mode=m) for m in modes if sum(m == other for other, _ in pairs) > 1]
     return groups + [Outlier(source=int(s)) for s in np.unique(comparison.source[comparison.source >= 0])]
-
-
-__all__ = ["Outlier", "log_price", "suspects", "with_outliers"]

@@ -42,13 +42,13 @@ class Phases(Quantity):
         late = PHASE_DOUBT * np.tile(test.frequency / test.frequency.max(), n_chains)
         judged = (PHASE_UNEVENNESS * PHASE_DOUBT) ** 2 + self._complexity**2
         return Block(
-            "phase",
-            test.phase.ravel(),
-            (test.phase_sigma**2 + judged).ravel(),
-            np.zeros((test.phase.size, len(self.setting.names))),
-            late[:, None],
-            columns,
-            np.tile(np.arange(n_modes), n_chains),
+            channel="phase",
+            residual=test.phase.ravel(),
+            variance=(test.phase_sigma**2 + judged).ravel(),
+            factors=np.zeros((test.phase.size, len(self.setting.names))),
+            named=late[:, None],
+            own=columns,
+            mode=np.tile(np.arange(n_modes), n_chains),
             judged=judged.ravel(),
             judged_own=True,
         )

@@ -45,12 +45,12 @@ class Trends(Quantity):
         always = np.hypot(UNREMARKABLE_TREND, TREND_SHARE * test.repeatability)
         common = np.linalg.norm([always, test.common_trend_sigma, BENT_COURSE * rate])
         return Block(
-            "trend",
-            np.where(known, test.trend - rate, 0.0),
-            np.where(known, test.trend_sigma**2 + uneven**2, 1.0),
-            np.zeros((n, len(self.setting.names))),
-            np.zeros((n, 0)),
-            np.where(known, common, 0.0)[:, None],
-            np.arange(n),
+            channel="trend",
+            residual=np.where(known, test.trend - rate, 0.0),
+            variance=np.where(known, test.trend_sigma**2 + uneven**2, 1.0),
+            factors=np.zeros((n, len(self.setting.names))),
+            named=np.zeros((n, 0)),
+            own=np.where(known, common, 0.0)[:, None],
+            mode=np.arange(n),
             idealised=uneven**2 if fidelity else None,
         )

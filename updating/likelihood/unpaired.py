@@ -101,14 +101,14 @@ class UnpairedModes(Quantity):
         parts = [self._likeliest(view, i) for i in range(len(self._test.frequency))]
         count = sum(len(part.residual) for part in parts)
         return Block(
-            "unpaired",
-            np.concatenate([part.residual for part in parts]),
-            np.concatenate([part.variance for part in parts]),
-            np.concatenate([part.factors for part in parts]),
-            np.zeros((count, 0)),
-            block_diag(*(part.own for part in parts)),
-            np.full(count, NO_MODE),
-            np.concatenate([_channels(part, len(self._test.seen)) for part in parts]),
+            channel="unpaired",
+            residual=np.concatenate([part.residual for part in parts]),
+            variance=np.concatenate([part.variance for part in parts]),
+            factors=np.concatenate([part.factors for part in parts]),
+            named=np.zeros((count, 0)),
+            own=block_diag(*(part.own for part in parts)),
+            mode=np.full(count, NO_MODE),
+            source=np.concatenate([_channels(part, len(self._test.seen)) for part in parts]),
             idealised=np.concatenate([np.eye(1, len(part.residual))[0] * part.idealised for part in parts])
             if view.doubt.fidelity
             else None,

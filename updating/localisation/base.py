@@ -92,6 +92,3 @@ def _masses(problem: SpecimenProblem) -> FloatArray:
     if not size.sum() > 0:
         size = np.ones(len(size))
     return np.asarray(size / size.sum())
-
-
-__all__ = ["KINDS", "Kind", "Localiser", "areas"]

@@ -88,6 +88,3 @@ def columns(problem: SpecimenProblem, kind: Kind, *, step: float = 0.05, small: 
         low, high = (problem.compare(change.state(s)).residual for s in (-step, step))
         found.append((low - high) / (2 * step))
     return np.stack(found, axis=1)
-
-
-__all__ = ["NODES", "Change", "changes", "columns"]

@@ -35,6 +35,3 @@ class Comac(Localiser):
         middle = centres(problem)[:, : at.shape[1]]
         nearest = np.argmin(np.linalg.norm(middle[:, None] - at[None], axis=2), axis=1)
         return np.asarray(missing[nearest])
-
-
-__all__ = ["Comac"]

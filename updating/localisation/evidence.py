@@ -189,6 +189,3 @@ def _moments(grid: FloatArray, score: FloatArray) -> tuple[float, float]:
     weight = np.exp(score - logsumexp(score))
     mean = float(weight @ grid)
     return mean, float(np.sqrt(weight @ (grid - mean) ** 2))
-
-
-__all__ = ["RegionEvidence", "RegionPosterior", "compare_regions"]

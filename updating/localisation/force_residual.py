@@ -65,6 +65,3 @@ def region_parts(problem: SpecimenProblem, kind: str) -> FloatArray:
         if term.kind == kind:
             found += term.scale(base.factors) * parts[:-1, :n, :n]
     return found
-
-
-__all__ = ["ForceResidual", "region_parts"]

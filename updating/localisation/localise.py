@@ -216,6 +216,3 @@ def _undivided(problem: SpecimenProblem, kind: Kind) -> str | None:
     if len(spec.regions) < 2:
         return "the model has one region; divide it by [[model.region]], on a deck by element sets"
     return None
-
-
-__all__ = ["METHODS", "Localisation", "Ranked", "localise"]

@@ -55,6 +55,3 @@ class ConstitutiveError(Localiser):
         stored = np.einsum("ir,ij,jr->r", moved, parts.sum(axis=0), moved)
         share = np.sum(energy / np.maximum(stored, 1e-300), axis=1)
         return np.asarray(np.maximum(share, 0.0))
-
-
-__all__ = ["ConstitutiveError"]

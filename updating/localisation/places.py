@@ -62,6 +62,3 @@ def regions_at(spec: Spec, places: FloatArray) -> FloatArray:
     scale = max(spec.length, spec.width, spec.thickness)
     nearest = distance <= distance.min(axis=1, keepdims=True) + 1e-9 * scale
     return np.asarray(nearest / nearest.sum(axis=1, keepdims=True))
-
-
-__all__ = ["boxes", "centres", "regions_at"]

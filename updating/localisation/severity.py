@@ -194,6 +194,3 @@ def integrate(grid: FloatArray, values: FloatArray, *, parts: int = 8) -> tuple[
         np.repeat(np.maximum(values[1:], values[:-1]), parts) + EVEN
     )  # a spline may swing where steps are long
     return middle, np.asarray(np.minimum(CubicSpline(grid, values)(middle), highest) + np.log(np.diff(fine)))
-
-
-__all__ = ["DEPTH", "Between", "integrate", "refine"]

@@ -19,7 +19,7 @@ from updating.models.state import NOMINAL
 from updating.problem.specimen import SpecimenProblem
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Shapes:
     """Measured shapes beside the model on its reduced basis.
 
@@ -58,14 +58,14 @@ def shapes_of(problem: SpecimenProblem) -> Shapes:
     model = rows @ modes
     known = np.unique(np.r_[test.seen, test.hit[test.hit >= 0]])
     return Shapes(
-        known,
-        _components(problem, model)[known],
-        model[known],
-        rows[known],
-        modes,
-        2 * np.pi * test.frequency,
-        stiffness,
-        mass,
+        points=known,
+        measured=_components(problem, model)[known],
+        predicted=model[known],
+        rows=rows[known],
+        modes=modes,
+        omega=2 * np.pi * test.frequency,
+        stiffness=stiffness,
+        mass=mass,
     )
 
 
@@ -146,6 +146,3 @@ def dynamic(shapes: Shapes, *, trust: float = 1e4) -> FloatArray:
         normal = force @ linalg.cho_solve(flexibility, force) + weight * shapes.rows.T @ shapes.rows
         found[:, r] = linalg.solve(normal, weight * shapes.rows.T @ shapes.measured[:, r], assume_a="sym")
     return found
-
-
-__all__ = ["Shapes", "dynamic", "serep", "shapes_of"]

@@ -55,6 +55,3 @@ class BestSubspace(Localiser):
         if kind == "damping":
             gain = np.where(load > 0, gain, 0.0)  # a region cannot take damping away
         return np.asarray(np.clip(gain / max(float(total[0, 0]), 1e-300), 0.0, 1.0))
-
-
-__all__ = ["BestSubspace"]

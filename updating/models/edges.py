@@ -33,7 +33,7 @@ POINTS = 5
 """Gauss points in every element along an edge: exact for the product of two quintics [-]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Trace:
     """The functions by which a clamped edge may move where it lets go, orthonormal along the edge.
 
@@ -117,7 +117,16 @@ def trace(structure: FieldStructure, released: str) -> Trace:
     # in lengths of the edge: slopes of the functions over themselves
     stiff, own = (each.T @ (weights[:, None] * each) for each in (slopes, rows))
     _, shapes = eigh(stiff, own, subset_by_index=(0, min(most, len(dofs)) - 1))
-    return Trace(component, name, edge, dofs, shapes, fields.n_dofs, lines, across)
+    return Trace(
+        component=component,
+        name=name,
+        edge=edge,
+        dofs=dofs,
+        shapes=shapes,
+        n_dofs=fields.n_dofs,
+        lines=lines,
+        across=across,
+    )
 
 
 def static_lifts(structure: FieldStructure, released: str) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from acquisition.display import Displayed, counted
@@ -122,6 +122,7 @@ class Spec(Displayed):
     """
 
     kind: Kind
+    _: KW_ONLY
     length: float
     width: float
     thickness: float

@@ -18,7 +18,7 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import EstimationError
 from updating.models.damping import WHOLE
 from updating.models.state import State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 from updating.test_data.measured import Measured
 

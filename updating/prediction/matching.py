@@ -291,6 +291,3 @@ def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
         )
     far = max(ratio, 1 / ratio) > DISTANT
     return (f"{times}, and they are paired by their order alone: they may be different modes",) if far else ()
-
-
-__all__ = ["Paired", "mac_of_constants", "match", "pair_modes"]

@@ -13,20 +13,9 @@ from acquisition.quantities import hertz, percent, quantity
 from updating.models.accuracy import CHANGED, every_second, reduction_error
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
-from updating.problem.theory_error import TheoryError, discrepancy, theory_error
+from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured
 from updating.thresholds import IMPORTED_MESH_DOUBT
-
-__all__ = [
-    "TheoryError",
-    "discrepancy",
-    "missing_mode",
-    "notes_on",
-    "on_levels",
-    "on_modes",
-    "on_reduction",
-    "theory_error",
-]
 
 
 def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:

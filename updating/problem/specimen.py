@@ -34,8 +34,7 @@ from updating.likelihood.trend import Trends
 from updating.likelihood.unpaired import UnpairedModes
 from updating.models.absorbers import swinging
 from updating.models.state import NOMINAL, State
-from updating.prediction.assignment import partners, undisturbed
-from updating.prediction.matching import match
+from updating.prediction.assignment import match, partners, undisturbed
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import LEAST_CONSTANT_NOISE, LEAST_FREQUENCY_NOISE
 

@@ -9,11 +9,13 @@ so it is a doubt of the frequencies, one amount for all modes together.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.build import build_structure
-from updating.models.spec import Spec
+from updating.models.spec import Spec, Theory
 
 
 def stiffening(spec: Spec, order: IntArray, *, along: int = 40, across: int = 4) -> FloatArray:
@@ -39,13 +41,10 @@ def stiffening(spec: Spec, order: IntArray, *, along: int = 40, across: int = 4)
     if spec.kind != "beam" or spec.material.poisson == 0:
         return np.zeros(len(order))
     count = int(order.max()) + 1
-    outline = (spec.length, spec.width, spec.thickness)
     cells = min(spec.elements[0], along)
-    thick = spec.theory == "timoshenko"
-    plate = Spec(
-        "plate", *outline, (cells, across), spec.clamped, "mindlin" if thick else "kirchhoff", spec.material
-    )  # fmt: skip
-    beam = Spec("beam", *outline, (cells,), spec.clamped, spec.theory, spec.material)
+    beam = replace(spec, elements=(cells,), regions=(), masses=())
+    theory: Theory = "mindlin" if spec.theory == "timoshenko" else "kirchhoff"
+    plate = replace(beam, kind="plate", elements=(cells, across), theory=theory, regions=())
     found, own = _bending(plate, count), _bending(beam, count)
     shift = np.zeros(count)
     shift[: len(found)] = np.log(found / own[: len(found)])

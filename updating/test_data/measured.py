@@ -23,7 +23,7 @@ UNSTATED, NO_PARTNER = -1, -2
 """What stands among the partners for a mode of which nothing is stated, and for one that is stated to have none."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Measured(Displayed):
     """Modes of one test as a model can predict them.
 

@@ -16,7 +16,7 @@ FINE = (161, (61, 41))
 """Points at which the model's shape is drawn, along a beam and over a plate."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Shapes:
     """Shapes ready to draw, each scaled so that the largest component measured is 1.
 
@@ -79,10 +79,16 @@ def from_modal(modal: ModalData) -> Shapes:
     size = _sizes(values)
     lines = _lines(modal.geometry, nodes) if placed else None
     names = () if placed else tuple(str(modal.dofs[i]) for i in rows)
-    scaled = values / size, sigma / np.abs(size)
     left_out = tuple(str(dof) for i, dof in enumerate(modal.dofs) if i not in set(rows.tolist()))
     return Shapes(
-        modal.frequency, points, *scaled, placed=placed, lines=lines, names=names, left_out=left_out
+        frequency=modal.frequency,
+        points=points,
+        values=values / size,
+        sigma=sigma / np.abs(size),
+        placed=placed,
+        lines=lines,
+        names=names,
+        left_out=left_out,
     )
 
 
@@ -151,8 +157,24 @@ def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
         w, level = at_points(predictor, prediction, place_of, values)
         w, shape = w * level, None if shape is None else shape * level
     if points.shape[1] > 2:
-        return Shapes(measured.frequency, principal(points), values, sigma, None, None, frequency)
-    return Shapes(measured.frequency, points, values, sigma, fine, shape, frequency)
+        return Shapes(
+            frequency=measured.frequency,
+            points=principal(points),
+            values=values,
+            sigma=sigma,
+            fine=None,
+            model=None,
+            model_frequency=frequency,
+        )
+    return Shapes(
+        frequency=measured.frequency,
+        points=points,
+        values=values,
+        sigma=sigma,
+        fine=fine,
+        model=shape,
+        model_frequency=frequency,
+    )
 
 
 def common_rows(measured: Measured) -> tuple[IntArray, IntArray]:

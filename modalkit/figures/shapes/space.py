@@ -44,7 +44,7 @@ TALL = 2.5
 """Height of a panel [in]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Spatial:
     """Shapes in space.
 
@@ -111,12 +111,12 @@ def spatial_modes(modal: ModalData) -> Spatial:
     page = shapes_page(modal, None)
     motion = np.array([mode["re"] for mode in page["modes"]])
     return Spatial(
-        np.asarray(page["places"]),
-        motion / _largest(motion),
-        modal.frequency,
-        len(modal.dofs),
-        page["lines"],
-        page["faces"],
+        places=np.asarray(page["places"]),
+        motion=motion / _largest(motion),
+        frequency=modal.frequency,
+        directions=len(modal.dofs),
+        lines=page["lines"],
+        faces=page["faces"],
         still=page["still"],
     )
 
@@ -142,8 +142,9 @@ def spatial_measured(measured: Measured, predictor: Predictor | None) -> Spatial
         model = model.transpose(1, 0, 2) / size
     mesh = None if predictor is None else mesh_of(predictor.spec)
     return Spatial(
-        measured.points[at], motion / size, measured.frequency, len(at), [], [], model, hz,
-        None if mesh is None else (mesh.places, mesh.lines),
+        places=measured.points[at], motion=motion / size, frequency=measured.frequency, directions=len(at),
+        lines=[], faces=[], model=model, model_frequency=hz,
+        mesh=None if mesh is None else (mesh.places, mesh.lines),
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
 from updating.models.state import State
 from updating.nominal import predictor_of
-from updating.prediction.matching import mac_of_constants
+from updating.prediction.assignment import mac_of_constants
 from updating.prediction.predict import Predictor
 
 

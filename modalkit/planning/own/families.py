@@ -45,16 +45,18 @@ def _supposed(effect: Supposed) -> Iterator[Family]:
     if not own.of_parameter:
         most = min(1.0, own.high)
         yield Family(
-            effect.name, lambda q, _: {"amount": q}, min(own.low, 0.0), own.high, most, f"{effect.name}, by more than",
-            lambda q: f"{severity(100 * abs(q))} %", both=False,
+            name=effect.name, values=lambda q, _: {"amount": q}, low=min(own.low, 0.0), high=own.high,
+            clear=most, words=f"{effect.name}, by more than", amount=lambda q: f"{severity(100 * abs(q))} %",
+            both=False,
         )  # fmt: skip
         return
     stands = own.as_modelled
     sign = -1.0 if own.high <= stands else 1.0
     ends = sorted(sign * (end - stands) for end in (own.low, own.high))
     yield Family(
-        effect.name, lambda q, _: {"value": stands + sign * q}, min(ends[0], 0.0), ends[1], ends[1],
-        f"{effect.name}: away from the model's value by more than", _in_its_unit(own.unit), both=False,
+        name=effect.name, values=lambda q, _: {"value": stands + sign * q}, low=min(ends[0], 0.0),
+        high=ends[1], clear=ends[1], words=f"{effect.name}: away from the model's value by more than",
+        amount=_in_its_unit(own.unit), both=False,
     )  # fmt: skip
 
 

@@ -176,8 +176,10 @@ def _planned(study: Study) -> _Test:
     spec, table = study.spec(), study.test
     stated = planned_points(study, spec)
     points = _spaced(study, spec) if stated is None else stated
-    case = Case(study.name, spec, points.test(study, points.hit[0]), None, study.doubts(), study.surroundings(),
-                study.accepted())  # fmt: skip
+    case = Case(
+        study.name, spec, points.test(study, points.hit[0]), baseline=None, tolerances=study.doubts(),
+        environment=study.surroundings(), accepted=study.accepted(),
+    )  # fmt: skip
     predictor = predictor_of(case)
     ranks, band = _in_band(study, predictor.predict(count=MANY).frequency, _shown(predictor))
     sensor = points.sensor

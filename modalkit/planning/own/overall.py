@@ -31,21 +31,21 @@ def _whole(noun: str, *, most: float, clear: float) -> Maker:
 def _sensor(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     mass = total_mass(predictor.spec)
     yield Family(
-        effect.name, lambda q, _: {"mass": q, "bulk": 0.0}, 0.0, HEAVIEST * mass, BODY * mass,
-        "a sensor heavier than stated by", in_g,
+        name=effect.name, values=lambda q, _: {"mass": q, "bulk": 0.0}, low=0.0, high=HEAVIEST * mass,
+        clear=BODY * mass, words="a sensor heavier than stated by", amount=in_g,
     )  # fmt: skip
 
 
 def _gain(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     end = float(np.log(2.5))
     yield Family(
-        effect.name,
-        lambda q, _: {"gain": float(np.exp(q))},
-        -end,
-        end,
-        0.2,
-        "a level off by more than",
-        per_cent,
+        name=effect.name,
+        values=lambda q, _: {"gain": float(np.exp(q))},
+        low=-end,
+        high=end,
+        clear=0.2,
+        words="a level off by more than",
+        amount=per_cent,
     )
 
 
@@ -59,8 +59,8 @@ def _middle(predictor: Predictor) -> tuple[float, float]:
 def _window(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     _, decay = _middle(predictor)
     yield Family(
-        effect.name, lambda q, _: {"decay": q}, 0.0, max(70.0, 20 * decay), 1.5 * decay, "a window of more than",
-        in_unit("1/s"),
+        name=effect.name, values=lambda q, _: {"decay": q}, low=0.0, high=max(70.0, 20 * decay),
+        clear=1.5 * decay, words="a window of more than", amount=in_unit("1/s"),
     )  # fmt: skip
 
 
@@ -70,31 +70,35 @@ def _uniform(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     unit = {"alpha": 2 * decay, "beta": 2 * decay / omega**2, "loss_factor": 2 * decay / omega}
     laws = tuple(unit)
     yield Family(
-        effect.name, lambda q, law: {name: q * unit[name] * (name == laws[int(law)]) for name in laws}, 0.0, 20.0, 1.5,
-        "damping", lambda q: f"{severity(1 + q)} times that expected in the middle", np.arange(3.0),
+        name=effect.name,
+        values=lambda q, law: {name: q * unit[name] * (name == laws[int(law)]) for name in laws}, low=0.0,
+        high=20.0, clear=1.5, words="damping",
+        amount=lambda q: f"{severity(1 + q)} times that expected in the middle", places=np.arange(3.0),
     )  # fmt: skip
 
 
 def _length(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     size = predictor.spec.length
     yield Family(
-        effect.name, lambda q, _: {"extension": q}, -0.06 * size, 0.12 * size, 0.03 * size,
-        "a free length off by more than", lambda q: f"{severity(1e3 * abs(q))} mm", always=True,
+        name=effect.name, values=lambda q, _: {"extension": q}, low=-0.06 * size, high=0.12 * size, clear=0.03 * size,
+        words="a free length off by more than", amount=lambda q: f"{severity(1e3 * abs(q))} mm", always=True,
     )  # fmt: skip
 
 
 def _taper(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     yield Family(
-        effect.name, lambda q, _: {"slope": q}, -0.8, 0.8, 0.1, "a thickness that changes along x by more than",
-        lambda q: f"{severity(100 * abs(q))} %", always=True,
+        name=effect.name, values=lambda q, _: {"slope": q}, low=-0.8, high=0.8, clear=0.1,
+        words="a thickness that changes along x by more than",
+        amount=lambda q: f"{severity(100 * abs(q))} %", always=True,
     )  # fmt: skip
 
 
 def _orthotropy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     end = float(np.log(2.0))
     yield Family(
-        effect.name, lambda q, _: {"ratio": float(np.exp(q)), "shear_ratio": 1.0}, -end, end, 0.1,
-        "a modulus along over that across off by more than", per_cent, always=True,
+        name=effect.name, values=lambda q, _: {"ratio": float(np.exp(q)), "shear_ratio": 1.0}, low=-end,
+        high=end, clear=0.1, words="a modulus along over that across off by more than", amount=per_cent,
+        always=True,
     )  # fmt: skip
 
 
@@ -103,8 +107,9 @@ def _load(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     (force,) = effect.parameters(predictor)
     buckling = -force.low / BELIEVED_LOAD
     yield Family(
-        effect.name, lambda q, _: {"force": q}, -MOST_LOAD * buckling, 2 * buckling, CLEAR_LOAD * buckling,
-        "an axial load above", lambda q: f"{severity(abs(q))} {force.unit}",
+        name=effect.name, values=lambda q, _: {"force": q}, low=-MOST_LOAD * buckling, high=2 * buckling,
+        clear=CLEAR_LOAD * buckling, words="an axial load above",
+        amount=lambda q: f"{severity(abs(q))} {force.unit}",
     )  # fmt: skip
 
 
@@ -116,16 +121,17 @@ def _fluid(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     tanks = [dict(zip(unstated, at, strict=True)) for at in product((np.inf, near), repeat=len(unstated))]
     known = around.fluid_density
     yield Family(
-        effect.name, lambda q, form: {"fluid_density": q, **tanks[int(form)]}, 0.0, known or 2000.0, known or 998.0,
-        "a fluid denser than", in_unit("kg/m3"), np.arange(float(len(tanks))),
+        name=effect.name, values=lambda q, form: {"fluid_density": q, **tanks[int(form)]}, low=0.0,
+        high=known or 2000.0, clear=known or 998.0, words="a fluid denser than", amount=in_unit("kg/m3"),
+        places=np.arange(float(len(tanks))),
     )  # fmt: skip
 
 
 def _viscous(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     """Severity is the root of the viscosity, in proportion to which a boundary layer damps."""
     yield Family(
-        effect.name, lambda q, _: {"viscosity": q**2}, 0.0, 1.0, 0.1, "a fluid more viscous than",
-        lambda q: f"{severity(1e3 * q**2)} mPa s",
+        name=effect.name, values=lambda q, _: {"viscosity": q**2}, low=0.0, high=1.0, clear=0.1,
+        words="a fluid more viscous than", amount=lambda q: f"{severity(1e3 * q**2)} mPa s",
     )  # fmt: skip
 
 

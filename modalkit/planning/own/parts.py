@@ -44,8 +44,9 @@ def _soft(effect: Effect, predictor: Predictor) -> Iterator[Family]:
         return
     for name in stiff_regions(predictor):
         yield Family(
-            f"{effect.name} of {name}", _regional(name, "loss", lambda q: 1 - float(np.exp(-q))), -float(np.log(4.0)),
-            float(np.log(10.0)), SOFTER, f"a stiffness of {name} off by more than", _lost, effect=effect.name, at=name,
+            name=f"{effect.name} of {name}", values=_regional(name, "loss", lambda q: 1 - float(np.exp(-q))),
+            low=-float(np.log(4.0)), high=float(np.log(10.0)), clear=SOFTER,
+            words=f"a stiffness of {name} off by more than", amount=_lost, effect=effect.name, at=name,
         )  # fmt: skip
 
 
@@ -76,7 +77,11 @@ def _zones(
         return {"x": x, "y": y, "extent": along, "extent_y": across, **value(q)}
 
     places = np.arange(float(len(zones)))
-    return Family(effect.name, values, *sizes, f"a zone's {what} off by more than", words, places)
+    low, high, clear = sizes
+    return Family(
+        name=effect.name, values=values, low=low, high=high, clear=clear,
+        words=f"a zone's {what} off by more than", amount=words, places=places,
+    )  # fmt: skip
 
 
 def _heavy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
@@ -87,8 +92,9 @@ def _heavy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
         return
     for name in heavy_regions(predictor):
         yield Family(
-            f"{effect.name} of {name}", _regional(name, "factor", lambda q: float(np.exp(q))), -end, end, HEAVIER,
-            f"a mass of {name} off by more than", per_cent, effect=effect.name, at=name,
+            name=f"{effect.name} of {name}", values=_regional(name, "factor", lambda q: float(np.exp(q))),
+            low=-end, high=end, clear=HEAVIER, words=f"a mass of {name} off by more than", amount=per_cent,
+            effect=effect.name, at=name,
         )  # fmt: skip
 
 
@@ -102,17 +108,18 @@ def _joints(effect: Effect, predictor: Predictor) -> Iterator[Family]:
             name, own = f"{effect.name} {joint.name} {way}", joint.stiffness[i]
             if own:
                 yield Family(
-                    name, _springs_of(joint, parameter, own), -float(np.log(10.0)), SOFTEST, LOOSE,
-                    f"a joint {joint.name} that {way} with less than",
-                    lambda q: f"{severity(100 * float(np.exp(-abs(q))))} % of its stiffness", effect=effect.name,
-                    at=joint.name, both=False,
+                    name=name, values=_springs_of(joint, parameter, own), low=-float(np.log(10.0)),
+                    high=SOFTEST, clear=LOOSE, words=f"a joint {joint.name} that {way} with less than",
+                    amount=lambda q: f"{severity(100 * float(np.exp(-abs(q))))} % of its stiffness",
+                    effect=effect.name, at=joint.name, both=False,
                 )  # fmt: skip
             else:
                 unit = own_stiffness(predictor) * (predictor.spec.imported.reach**2 if i else 1.0)
                 yield Family(
-                    name, _springs_of(joint, parameter, 0.0), 0.0, 1e3 * unit, unit,
-                    f"a joint {joint.name} held by more than", in_unit("N m/rad" if i else "N/m"), effect=effect.name,
-                    at=joint.name, finest=FAINTEST,
+                    name=name, values=_springs_of(joint, parameter, 0.0), low=0.0, high=1e3 * unit,
+                    clear=unit, words=f"a joint {joint.name} held by more than",
+                    amount=in_unit("N m/rad" if i else "N/m"), effect=effect.name, at=joint.name,
+                    finest=FAINTEST,
                 )  # fmt: skip
 
 
@@ -147,9 +154,9 @@ def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     soft = SOFT_SUPPORT * (1.0 if turns else 5.0)
     for name, support, axis in ways:
         yield Family(
-            name, _given(support, axis), 0.0, 1 / stiffness.low, 1 / (soft * stiffness.low),
-            "a clamp softer than" if support is None else f"{_spoken(support)} softer than",
-            lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name,
+            name=name, values=_given(support, axis), low=0.0, high=1 / stiffness.low, clear=1 / (soft * stiffness.low),
+            words="a clamp softer than" if support is None else f"{_spoken(support)} softer than",
+            amount=lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name,
             at="" if support is None else support.name, finest=max(stiffness.low / stiffness.high, FAINTEST),
         )  # fmt: skip
 
@@ -181,8 +188,8 @@ def _layers(effect: Effect, predictor: Predictor) -> Iterator[Family]:
         return
     for name in stiff_regions(predictor):
         yield Family(
-            f"{effect.name} on {name}", _layer(name, nothing), 0.0, LOSSY, LAYER,
-            f"a layer on {name} with a loss factor above", severity, effect=effect.name, at=name,
+            name=f"{effect.name} on {name}", values=_layer(name, nothing), low=0.0, high=LOSSY, clear=LAYER,
+            words=f"a layer on {name} with a loss factor above", amount=severity, effect=effect.name, at=name,
         )  # fmt: skip
 
 

@@ -30,10 +30,10 @@ def _bodies(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterato
 
 def _body(cause: str, name: str, places: list[Values], more: Values, mass: float) -> Family:
     return Family(
-        f"{cause} at {name}" if name else cause,
-        lambda q, i: {**places[int(i)], **more, "mass": q}, 0.0, HEAVIEST * mass, BODY * mass,
-        f"a body at {name} heavier than" if name else "a body at a point heavier than", in_g,
-        np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), effect=cause, at=name,
+        name=f"{cause} at {name}" if name else cause,
+        values=lambda q, i: {**places[int(i)], **more, "mass": q}, low=0.0, high=HEAVIEST * mass, clear=BODY * mass,
+        words=f"a body at {name} heavier than" if name else "a body at a point heavier than", amount=in_g,
+        places=np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), effect=cause, at=name,
     )  # fmt: skip
 
 
@@ -53,9 +53,10 @@ def _springs(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterat
 
     def family(name: str, at: str, places: list[Values]) -> Family:
         return Family(
-            name, lambda q, i: {**places[int(i)], **still, "stiffness": q}, 0.0, STIFFEST * own, SPRING * own,
-            f"a spring to the ground at {at or 'a point'} stiffer than", in_unit("N/m"),
-            np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), effect=effect.name,
+            name=name, values=lambda q, i: {**places[int(i)], **still, "stiffness": q}, low=0.0,
+            high=STIFFEST * own, clear=SPRING * own,
+            words=f"a spring to the ground at {at or 'a point'} stiffer than", amount=in_unit("N/m"),
+            places=np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), effect=effect.name,
             at=at, finest=FAINTEST,
         )  # fmt: skip
 
@@ -76,8 +77,9 @@ def _channels(effect: Effect, predictor: Predictor, points: FloatArray) -> Itera
     nodes = predictor.measured.nodes[: len(points)]
     end = float(np.log(2.5))
     yield Family(
-        effect.name, lambda q, i: {"points": (nodes[int(i)],), "gain": float(np.exp(q))}, -end, end, 0.2,
-        "a point's level off by more than", per_cent, np.arange(float(len(points))), separately=True,
+        name=effect.name, values=lambda q, i: {"points": (nodes[int(i)],), "gain": float(np.exp(q))},
+        low=-end, high=end, clear=0.2, words="a point's level off by more than", amount=per_cent,
+        places=np.arange(float(len(points))), separately=True,
     )  # fmt: skip
 
 
@@ -85,9 +87,10 @@ def _strayed(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterat
     """Any of the points beside its place, along x."""
     nodes, length = predictor.measured.nodes, predictor.spec.length
     yield Family(
-        effect.name, lambda q, i: {"point": nodes[int(i)], "dx": q, "dy": 0.0}, -0.12 * length, 0.12 * length,
-        0.05 * length, "a point off by more than", lambda q: f"{severity(1e3 * abs(q))} mm",
-        np.arange(float(len(points))), separately=True,
+        name=effect.name, values=lambda q, i: {"point": nodes[int(i)], "dx": q, "dy": 0.0},
+        low=-0.12 * length, high=0.12 * length, clear=0.05 * length, words="a point off by more than",
+        amount=lambda q: f"{severity(1e3 * abs(q))} mm", places=np.arange(float(len(points))),
+        separately=True,
     )  # fmt: skip
 
 

@@ -58,7 +58,17 @@ def _draw(
     modulus, density, poisson = MATERIALS[int(rng.choice(3, p=MATERIAL_SHARES))]
     breadth = round(breadth, 4)
     body = Block(
-        kind, 0.0, length, width, thickness, height, breadth, modulus, density, poisson, elements=MODELLED
+        kind=kind,
+        start=0.0,
+        end=length,
+        width=width,
+        thickness=thickness,
+        height=height,
+        breadth=breadth,
+        E=modulus,
+        density=density,
+        poisson=poisson,
+        elements=MODELLED,
     )
     points = _points(rng, body)
     setup, bare = draw_on(

@@ -36,7 +36,17 @@ def draw_frame(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     breadth = round(depth * rng.uniform(1.5, 3.0), 4)
     modulus, density, poisson = MATERIALS[int(rng.choice(3, p=MATERIAL_SHARES))]
     rungs = (*(round(share + rng.uniform(-0.04, 0.04), 3) for share in _RUNGS[:-1]), _RUNGS[-1])
-    body = Frame(0.0, length, width, breadth, depth, modulus, density, poisson, rungs)
+    body = Frame(
+        start=0.0,
+        end=length,
+        width=width,
+        breadth=breadth,
+        thickness=depth,
+        E=modulus,
+        density=density,
+        poisson=poisson,
+        rungs=rungs,
+    )
     points = _points(rng, body)
     setup, bare = draw_on(
         rng, plan, body, points,

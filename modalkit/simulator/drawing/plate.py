@@ -106,7 +106,9 @@ def _bare_modes(
 ) -> tuple[FloatArray, FloatArray]:
     """Return elastic frequencies [Hz] of the plate alone, and shapes at some points, (n_points, n_modes)."""
     E, density, poisson = material
-    body = Plate(0.0, size[0], size[1], thickness, E, density, poisson, clamped, elements=(3, 2))
+    body = Plate(
+        0.0, size[0], size[1], thickness, E, density, poisson=poisson, clamped=clamped, elements=(3, 2)
+    )
     omega, shapes = body.real_modes(modes + body.rigid_modes)
     seen = body.rows(np.array(points), "w") @ shapes[:, body.rigid_modes :]
     return np.asarray(omega[body.rigid_modes :] / (2 * np.pi)), seen

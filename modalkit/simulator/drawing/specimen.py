@@ -121,7 +121,7 @@ def _tested(
     sensor = int(rng.choice(ends)) if rng.random() < 0.5 else int(rng.integers(len(points)))
     sensor_mass = round(rng.uniform(0.0, 0.01) * density * length * width * thickness, 5)
     modes = int(rng.choice([4, 5]))
-    beam = Beam(0.0, length, 0.02, thickness, E, density, poisson, clamped, elements=5)
+    beam = Beam(0.0, length, 0.02, thickness, E, density, poisson=poisson, clamped=clamped, elements=5)
     omega, shapes = beam.real_modes(modes + beam.rigid_modes)
     seen = beam.rows(np.array(points), "w") @ shapes[:, beam.rigid_modes :]
     sensor = near_a_node(rng, seen, sensor)

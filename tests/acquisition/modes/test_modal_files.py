@@ -83,7 +83,10 @@ def test_broken_mode_of_a_universal_file_is_not_left_out_silently(tmp_path, rng)
     shapes = rng.standard_normal((1, 2)) + 0j
     nothing = np.full(2, np.nan)
     write_uff(
-        tmp_path / "a.uff", modal=ModalData(np.array([5.0, 7.0]), nothing, dofs=(Dof(1, 3),), shapes=shapes)
+        tmp_path / "a.uff",
+        modal=ModalData(
+            frequency=np.array([5.0, 7.0]), frequency_sigma=nothing, dofs=(Dof(1, 3),), shapes=shapes
+        ),
     )
     data = (tmp_path / "a.uff").read_bytes()
     (tmp_path / "b.uff").write_bytes(data[: len(data) - 60])

@@ -256,7 +256,12 @@ def seeds(tmp_path_factory) -> list[bytes]:
         np.arange(8.0), rng.standard_normal((1, 8)) + 0j, responses, responses, coherence=np.ones((1, 8))
     )
     modal = ModalData(
-        np.array([5.0]), np.array([0.1]), np.array([0.01]), None, responses, np.ones((1, 1)) + 0j
+        frequency=np.array([5.0]),
+        frequency_sigma=np.array([0.1]),
+        damping=np.array([0.01]),
+        damping_sigma=None,
+        dofs=responses,
+        shapes=np.ones((1, 1)) + 0j,
     )
     system = b"    -1\n    18\n         1         1         0         8         1\nCS1\n" + (
         b"  0.00000e+00  0.00000e+00  0.00000e+00  0.00000e+00  1.00000e+00  0.00000e+00\n"

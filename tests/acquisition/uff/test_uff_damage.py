@@ -314,7 +314,14 @@ def test_exchanged_lines_of_a_shape_are_not_silent(tmp_path, reread, rng):
     shapes = rng.standard_normal((3, 1)) + 0j
     one = np.array([0.01])
     modal = ModalData(
-        np.array([12.5]), one, one, one, tuple(Dof(n, 3) for n in (1, 2, 3)), shapes, None, scaled=True
+        frequency=np.array([12.5]),
+        frequency_sigma=one,
+        damping=one,
+        damping_sigma=one,
+        dofs=tuple(Dof(n, 3) for n in (1, 2, 3)),
+        shapes=shapes,
+        shape_sigma=None,
+        scaled=True,
     )
     write_uff(tmp_path / "x.uff", modal=modal)
     lines = (tmp_path / "x.uff").read_bytes().split(b"\n")
@@ -441,13 +448,13 @@ def test_shape_sigmas_come_back(tmp_path, rng):
     shapes = rng.standard_normal((3, 2)) + 0j
     sigma = np.abs(rng.standard_normal((3, 2)))
     modal = ModalData(
-        np.array([5.0, 7.0]),
-        np.array([0.1, 0.2]),
-        np.array([0.01, 0.02]),
-        None,
-        dofs,
-        shapes,
-        sigma,
+        frequency=np.array([5.0, 7.0]),
+        frequency_sigma=np.array([0.1, 0.2]),
+        damping=np.array([0.01, 0.02]),
+        damping_sigma=None,
+        dofs=dofs,
+        shapes=shapes,
+        shape_sigma=sigma,
         scaled=True,
         geometry=Geometry((1, 2), np.eye(3)[:2]),
     )

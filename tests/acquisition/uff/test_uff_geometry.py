@@ -314,7 +314,13 @@ def test_pyuff_reads_modes(tmp_path):
     write_uff(
         tmp_path / "a.uff",
         modal=ModalData(
-            np.array([123.456]), np.array([0.1]), np.array([0.01]), None, dofs, shapes, scaled=True
+            frequency=np.array([123.456]),
+            frequency_sigma=np.array([0.1]),
+            damping=np.array([0.01]),
+            damping_sigma=None,
+            dofs=dofs,
+            shapes=shapes,
+            scaled=True,
         ),
     )
     one = pyuff.UFF(str(tmp_path / "a.uff")).read_sets(2)

@@ -154,7 +154,14 @@ def test_copies_in_two_files_count_once(tmp_path):
 def test_same_modes_in_two_files_count_once(tmp_path):
     from acquisition import ModalData
 
-    modal = ModalData(np.array([5.0]), np.array([0.1]), np.array([0.01]), None, (A,), np.ones((1, 1)) + 0j)
+    modal = ModalData(
+        frequency=np.array([5.0]),
+        frequency_sigma=np.array([0.1]),
+        damping=np.array([0.01]),
+        damping_sigma=None,
+        dofs=(A,),
+        shapes=np.ones((1, 1)) + 0j,
+    )
     write_uff(tmp_path / "a.uff", modal=modal)
     write_uff(tmp_path / "b.uff", modal=modal)
     content = read_uff([tmp_path / "a.uff", tmp_path / "b.uff"])

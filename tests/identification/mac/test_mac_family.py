@@ -117,7 +117,9 @@ def test_a_zero_shape_agrees_with_nothing(rng):
 
 def modes(frequency, shapes, nodes):
     dofs = tuple(Dof(n, 3) for n in nodes)
-    return ModalData(frequency, np.full(len(frequency), np.nan), dofs=dofs, shapes=shapes)
+    return ModalData(
+        frequency=frequency, frequency_sigma=np.full(len(frequency), np.nan), dofs=dofs, shapes=shapes
+    )
 
 
 def angle_to(a, b):

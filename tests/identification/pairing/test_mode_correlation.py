@@ -17,10 +17,15 @@ HERTZ = np.array([50.0, 80.0, 81.0, 140.0, 220.0, 300.0])
 def modes(frequency, shapes=None, nodes=None, sign=1):
     frequency = np.asarray(frequency, dtype=float)
     if shapes is None:
-        return ModalData(frequency, np.full(len(frequency), np.nan))
+        return ModalData(frequency=frequency, frequency_sigma=np.full(len(frequency), np.nan))
     numbers = range(1, len(shapes) + 1) if nodes is None else nodes
     dofs = tuple(Dof(int(i), sign * 3) for i in numbers)
-    return ModalData(frequency, np.full(len(frequency), np.nan), dofs=dofs, shapes=sign * np.asarray(shapes))
+    return ModalData(
+        frequency=frequency,
+        frequency_sigma=np.full(len(frequency), np.nan),
+        dofs=dofs,
+        shapes=sign * np.asarray(shapes),
+    )
 
 
 def beam_shapes(n_points, n_modes):

@@ -253,9 +253,11 @@ def test_complex_modes_keep_their_constants(truth, rng):
 def test_real_modes_are_the_nearest_real_ones(truth):
     dofs = tuple(Dof(i, 3) for i in range(1, 7))
     turned = truth.shapes * np.exp(1j * np.array([0.3, -1.0, 0.7]))
-    modes = ModalData(truth.hertz, np.full(3, np.nan), dofs=dofs, shapes=turned, scaled=True)
+    modes = ModalData(
+        frequency=truth.hertz, frequency_sigma=np.full(3, np.nan), dofs=dofs, shapes=turned, scaled=True
+    )
     shapes = real_modes(modes).shapes
     np.testing.assert_allclose(np.abs(shapes.real), np.abs(truth.shapes), rtol=1e-12)
     np.testing.assert_array_equal(shapes.imag, 0.0)
-    bare = ModalData(truth.hertz, np.full(3, np.nan))
+    bare = ModalData(frequency=truth.hertz, frequency_sigma=np.full(3, np.nan))
     assert real_modes(bare) is bare

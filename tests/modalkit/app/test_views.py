@@ -203,8 +203,8 @@ def test_points_of_lines_that_were_not_measured_are_drawn_at_rest():
     dofs = tuple(Dof(node, 3) for node in (1, 2, 3))
     shapes = np.array([[1.0], [2.0], [3.0]], complex)
     modal = ModalData(
-        np.array([10.0]),
-        np.array([0.01]),
+        frequency=np.array([10.0]),
+        frequency_sigma=np.array([0.01]),
         damping=np.array([0.01]),
         shapes=shapes,
         dofs=dofs,

@@ -79,8 +79,26 @@ def verdicts_of(test: HammerTest, bad: set[tuple[int, int]]) -> list[HitVerdict]
 def spec_of(kind: str) -> Spec:
     steel = Material(210e9, 7850.0)
     if kind == "beam":
-        return Spec("beam", 0.4, 0.03, 0.005, (24,), ("x0",), "euler-bernoulli", steel)
-    return Spec("plate", 0.4, 0.25, 0.003, (12, 8), ("x0",), "kirchhoff", steel)
+        return Spec(
+            "beam",
+            length=0.4,
+            width=0.03,
+            thickness=0.005,
+            elements=(24,),
+            clamped=("x0",),
+            theory="euler-bernoulli",
+            material=steel,
+        )
+    return Spec(
+        "plate",
+        length=0.4,
+        width=0.25,
+        thickness=0.003,
+        elements=(12, 8),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=steel,
+    )
 
 
 def case_of(kind: str, *, modes: int = 5, factor: float = 1.0) -> Case:
@@ -94,17 +112,17 @@ def case_of(kind: str, *, modes: int = 5, factor: float = 1.0) -> Case:
         )
     n = len(points)
     blank = Measured(
-        np.linspace(20, 900, modes),
-        np.ones(modes),
-        np.full(modes, np.nan),
-        np.full(modes, np.nan),
-        points,
-        tuple(range(1, n + 1)),
-        np.full(n, n - 1),
-        np.arange(n),
-        np.ones((n, modes)),
-        np.ones((n, modes)),
-        True,
+        frequency=np.linspace(20, 900, modes),
+        frequency_sigma=np.ones(modes),
+        damping=np.full(modes, np.nan),
+        damping_sigma=np.full(modes, np.nan),
+        points=points,
+        nodes=tuple(range(1, n + 1)),
+        seen=np.full(n, n - 1),
+        hit=np.arange(n),
+        constants=np.ones((n, modes)),
+        constants_sigma=np.ones((n, modes)),
+        absolute=True,
     )
     truth = Predictor(spec, blank).predict(State(factors={"E": factor}), count=modes)
     measured = replace(

@@ -48,8 +48,8 @@ def plate_modes(nodes: list[int], lines: list[tuple[int, int]] | None = None) ->
     place = np.array([[0.1 * ((n - 1) % 4), 0.1 * ((n - 1) // 4), 0.0] for n in nodes])
     along, across = np.cos(np.pi * place[:, 0] / 0.3), np.cos(np.pi * place[:, 1] / 0.2)
     return ModalData(
-        np.array([100.0, 200.0]),
-        np.ones(2),
+        frequency=np.array([100.0, 200.0]),
+        frequency_sigma=np.ones(2),
         dofs=tuple(Dof(n, 3) for n in nodes),
         shapes=np.stack([along, along * across], axis=1).astype(complex),
         geometry=Geometry(tuple(nodes), place, lines=np.array(lines or np.zeros((0, 2)), int)),
@@ -76,7 +76,12 @@ def test_shapes_of_a_plate_fill_full_grids_and_others(gone: list[int]) -> None:
 
 
 def test_one_point_has_no_shape_to_draw() -> None:
-    modal = ModalData(np.array([10.0]), np.ones(1), dofs=(Dof(1, 3),), shapes=np.ones((1, 1)).astype(complex))
+    modal = ModalData(
+        frequency=np.array([10.0]),
+        frequency_sigma=np.ones(1),
+        dofs=(Dof(1, 3),),
+        shapes=np.ones((1, 1)).astype(complex),
+    )
     figure = shapes_figure(modal)
     assert "1 mode at one test point: there is no shape to draw" in words(figure)
     assert not figure.axes
@@ -84,12 +89,12 @@ def test_one_point_has_no_shape_to_draw() -> None:
 
 def test_shapes_where_no_point_has_a_place() -> None:
     modal = ModalData(
-        np.array([10.0]),
-        np.ones(1),
+        frequency=np.array([10.0]),
+        frequency_sigma=np.ones(1),
         dofs=(Dof(1, 3), Dof(2, 3)),
         shapes=np.array([[1.0], [0.5]]).astype(complex),
     )
     figure = shapes_figure(modal)
     assert figure.axes[0].get_xlabel() == "test point"
     with pytest.raises(InputError, match="no shapes"):
-        shapes_figure(ModalData(np.array([10.0]), np.ones(1)))
+        shapes_figure(ModalData(frequency=np.array([10.0]), frequency_sigma=np.ones(1)))

@@ -47,7 +47,13 @@ def box(extra: list[Dof] | None = None) -> ModalData:
     dofs = [*(Dof(n, 3) for n in (1, 2, 3, 4, 7)), Dof(5, 2), Dof(6, 2), *(extra or [])]
     shapes = np.linspace(-1.0, 1.0, len(dofs))[:, None].astype(complex)
     geometry = Geometry(tuple(range(1, 8)), places, lines)
-    return ModalData(np.array([10.0]), np.array([0.1]), dofs=tuple(dofs), shapes=shapes, geometry=geometry)
+    return ModalData(
+        frequency=np.array([10.0]),
+        frequency_sigma=np.array([0.1]),
+        dofs=tuple(dofs),
+        shapes=shapes,
+        geometry=geometry,
+    )
 
 
 def test_air_is_not_coloured_and_no_direction_is_dropped() -> None:
@@ -90,7 +96,9 @@ def test_a_point_is_drawn_where_all_its_directions_take_it() -> None:
 def test_what_has_no_coordinates_says_which_directions_it_leaves_out() -> None:
     dofs = (Dof(1, 3), Dof(2, 3), Dof(3, 3), Dof(3, 1))
     shapes = np.ones((4, 1), complex)
-    figure = shapes_figure(ModalData(np.array([10.0]), np.array([0.1]), dofs=dofs, shapes=shapes))
+    figure = shapes_figure(
+        ModalData(frequency=np.array([10.0]), frequency_sigma=np.array([0.1]), dofs=dofs, shapes=shapes)
+    )
     assert "not drawn" in words(figure) and "3+X" in words(figure)
 
 

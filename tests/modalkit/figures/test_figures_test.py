@@ -153,19 +153,21 @@ def test_auto_mac_names_the_modes_of_like_shape() -> None:
     assert_legible(auto_mac_figure(model_of(1).modal))
     shapes = np.array([[1.0, 0.0, 1.0], [0.0, 1.0, 0.1], [0.0, 0.0, 0.0]])
     modal = ModalData(
-        np.array([10.0, 20, 30]),
-        np.ones(3),
+        frequency=np.array([10.0, 20, 30]),
+        frequency_sigma=np.ones(3),
         dofs=tuple(Dof(i, 3) for i in (1, 2, 3)),
         shapes=shapes.astype(complex),
     )
     assert "Modes 1 and 3 look alike by 99 %" in words(auto_mac_figure(modal))
     with pytest.raises(InputError, match="no shapes"):
-        auto_mac_figure(ModalData(np.array([10.0]), np.ones(1)))
+        auto_mac_figure(ModalData(frequency=np.array([10.0]), frequency_sigma=np.ones(1)))
 
 
 def test_auto_mac_of_one_degree_of_freedom_claims_nothing() -> None:
     dofs, shapes = (Dof(1, 3),), np.array([[1.0, -2.0]]).astype(complex)
-    figure = auto_mac_figure(ModalData(np.array([10.0, 20]), np.ones(2), dofs=dofs, shapes=shapes))
+    figure = auto_mac_figure(
+        ModalData(frequency=np.array([10.0, 20]), frequency_sigma=np.ones(2), dofs=dofs, shapes=shapes)
+    )
     assert "One degree of freedom: there is no shape to compare" in words(figure)
     assert not any(word.strip() == "100" for word in words(figure))
     assert_legible(figure)

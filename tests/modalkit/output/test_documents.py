@@ -64,9 +64,20 @@ def diagnosis() -> Diagnosis:
     from acquisition import ModalData
 
     steel = Material(210e9, 7850.0)
-    spec = Spec("beam", 0.376, 0.0305, 0.0047625, (8,), ("x0",), "euler-bernoulli", steel)
+    spec = Spec(
+        "beam",
+        length=0.376,
+        width=0.0305,
+        thickness=0.0047625,
+        elements=(8,),
+        clamped=("x0",),
+        theory="euler-bernoulli",
+        material=steel,
+    )
     frequency = 0.9 * np.array([28.146, 176.39, 494.01])
-    measured = measured_from_modes(ModalData(frequency, 1e-4 * frequency), Axes(), spec)
+    measured = measured_from_modes(
+        ModalData(frequency=frequency, frequency_sigma=1e-4 * frequency), Axes(), spec
+    )
     assert isinstance(measured, Measured)
     from updating import LIBRARY
 

@@ -237,14 +237,19 @@ def test_modes_replace_modes_written_before(tmp_path: Path, ending: str) -> None
         write_modes(
             path,
             Modes(
-                ModalData(np.array([frequency]), np.array([0.1]), dofs=(Dof(1, 3),), shapes=np.ones((1, 1)))
+                ModalData(
+                    frequency=np.array([frequency]),
+                    frequency_sigma=np.array([0.1]),
+                    dofs=(Dof(1, 3),),
+                    shapes=np.ones((1, 1)),
+                )
             ),
         )
         assert read(path).modal.frequency == pytest.approx([frequency])
 
 
 def test_modes_without_shapes_are_not_written_as_what_cannot_hold_them(tmp_path: Path) -> None:
-    modes = Modes(ModalData(np.array([5.0]), np.array([0.1])))
+    modes = Modes(ModalData(frequency=np.array([5.0]), frequency_sigma=np.array([0.1])))
     with pytest.raises(InputError, match=r"write them as \.csv or \.json"):
         write_modes(tmp_path / "a.uff", modes)
     for name in ("a.csv", "a.json"):

@@ -303,7 +303,14 @@ def test_a_support_has_one_name_and_its_place_is_printed() -> None:
 def support(name: str) -> Support:
     whole = np.eye(6)
     return Support(
-        name, np.array([0.02, 0.015, -0.005]), np.zeros((6, 6)), whole, whole, whole, whole[0], whole[0]
+        name=name,
+        centre=np.array([0.02, 0.015, -0.005]),
+        loads=np.zeros((6, 6)),
+        own=whole,
+        mass=whole,
+        inertia=whole,
+        held_by=whole[0],
+        carried_by=whole[0],
     )
 
 

@@ -42,13 +42,24 @@ def blank(places: np.ndarray) -> Measured:
     n = len(places)
     f = np.array([500.0, 1000.0])
     return Measured(
-        f, f, f, f, places[:, None], tuple(range(1, n + 1)), np.full(n, n - 1), np.arange(n), np.ones((n, 2)),
-        np.ones((n, 2)), absolute=True,
+        frequency=f, frequency_sigma=f, damping=f, damping_sigma=f, points=places[:, None],
+        nodes=tuple(range(1, n + 1)), seen=np.full(n, n - 1), hit=np.arange(n), constants=np.ones((n, 2)),
+        constants_sigma=np.ones((n, 2)), absolute=True,
     )  # fmt: skip
 
 
 STEEL = Material(210e9, 7850.0, 0.3)
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (40,), ("x0",), "euler-bernoulli", STEEL, damping=Damping(alpha=1e-3))
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(40,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+    damping=Damping(alpha=1e-3),
+)
 MODEL = Predictor(BEAM, blank(np.linspace(0.08, 0.4, 5)))
 
 
@@ -234,9 +245,27 @@ def test_transducers_along_turned_axes_point_the_model_s_way(tmp_path: Path) -> 
 
 
 def test_points_stand_off_the_clamps() -> None:
-    beam = Spec("beam", 1.0, 0.03, 0.005, (10,), ("x0", "x1"), "euler-bernoulli", STEEL)
+    beam = Spec(
+        "beam",
+        length=1.0,
+        width=0.03,
+        thickness=0.005,
+        elements=(10,),
+        clamped=("x0", "x1"),
+        theory="euler-bernoulli",
+        material=STEEL,
+    )
     assert spaced(beam, 4)[:, 0] == pytest.approx([0.2, 0.4, 0.6, 0.8])
-    plate = Spec("plate", 0.4, 0.3, 0.003, (8, 6), ("x0",), "kirchhoff", STEEL)
+    plate = Spec(
+        "plate",
+        length=0.4,
+        width=0.3,
+        thickness=0.003,
+        elements=(8, 6),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=STEEL,
+    )
     grid = spaced(plate, None)
     assert len(grid) == 20
     assert grid.min(axis=0) == pytest.approx([0.08, 0.0])

@@ -17,7 +17,16 @@ from modalkit.workflow.processing_options import ProcessingOptions
 from updating import Axes, Material, Predictor, Spec, measured_from_identified
 from updating.prediction.matching import pair_modes
 
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(20,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=Material(210e9, 7850.0, 0.3),
+)
 X = np.linspace(0.05, 0.4, 8)
 NODES = tuple(range(1, 9))
 SHARE = np.array([1.0, 0.6, 0.3, 0.1])

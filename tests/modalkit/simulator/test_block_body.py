@@ -36,7 +36,19 @@ E, DENSITY, POISSON = 210e9, 7850.0, 0.3
 
 def body(kind: str, elements: int = 6) -> Block:
     length, width, thickness, height, breadth = SIZES[kind]
-    return Block(kind, 0.0, length, width, thickness, height, breadth, E, DENSITY, POISSON, elements=elements)
+    return Block(
+        kind=kind,
+        start=0.0,
+        end=length,
+        width=width,
+        thickness=thickness,
+        height=height,
+        breadth=breadth,
+        E=E,
+        density=DENSITY,
+        poisson=POISSON,
+        elements=elements,
+    )
 
 
 @cache
@@ -86,9 +98,11 @@ def predictor_of(drawn: Trial, folder: Path) -> Predictor:
     points = np.column_stack([setup.places, np.zeros(len(setup.points))])
     nothing, n = np.full(setup.modes, np.nan), len(points)
     test = Measured(
-        np.array(setup.nominal_hz[: setup.modes]), np.zeros(setup.modes), nothing, nothing, points,
-        tuple(range(1, n + 1)), np.full(n, setup.sensor), np.arange(n), np.ones((n, setup.modes)),
-        np.ones((n, setup.modes)), absolute=True, directions=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        frequency=np.array(setup.nominal_hz[: setup.modes]), frequency_sigma=np.zeros(setup.modes),
+        damping=nothing, damping_sigma=nothing, points=points, nodes=tuple(range(1, n + 1)),
+        seen=np.full(n, setup.sensor), hit=np.arange(n), constants=np.ones((n, setup.modes)),
+        constants_sigma=np.ones((n, setup.modes)), absolute=True,
+        directions=np.tile([0.0, 0.0, 1.0], (n, 1)),
     )  # fmt: skip
     return Predictor(spec, test)
 

@@ -63,9 +63,11 @@ def predictor_of(trial: Trial, folder: Path) -> Predictor:
     nothing = np.full(setup.modes, np.nan)
     n = len(points)
     test = Measured(
-        np.array(setup.nominal_hz[: setup.modes]), np.zeros(setup.modes), nothing, nothing, points,
-        tuple(range(1, n + 1)), np.full(n, setup.sensor), np.arange(n), np.ones((n, setup.modes)),
-        np.ones((n, setup.modes)), absolute=True, directions=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        frequency=np.array(setup.nominal_hz[: setup.modes]), frequency_sigma=np.zeros(setup.modes),
+        damping=nothing, damping_sigma=nothing, points=points, nodes=tuple(range(1, n + 1)),
+        seen=np.full(n, setup.sensor), hit=np.arange(n), constants=np.ones((n, setup.modes)),
+        constants_sigma=np.ones((n, setup.modes)), absolute=True,
+        directions=np.tile([0.0, 0.0, 1.0], (n, 1)),
     )  # fmt: skip
     return Predictor(spec, test)
 

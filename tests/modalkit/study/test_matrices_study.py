@@ -22,7 +22,16 @@ from updating.update import update
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry" / "beam_dry.uff"
 STEEL = Material(210e9, 7850.0, 0.3)
-BEAM = Spec("beam", 0.376, 0.0305, 0.0047625, (30,), ("x0",), "euler-bernoulli", STEEL)
+BEAM = Spec(
+    "beam",
+    length=0.376,
+    width=0.0305,
+    thickness=0.0047625,
+    elements=(30,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+)
 
 STUDY = f"""[test]
 files = ["{SAMPLE}"]

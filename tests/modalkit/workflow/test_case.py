@@ -81,8 +81,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_uff(place / "frfs.uff", frfs=frfs())
     write_uff(place / "geometry.uff", geometry=GEOMETRY)
     modal = ModalData(
-        FREQUENCY,
-        0.01 * FREQUENCY,
+        frequency=FREQUENCY,
+        frequency_sigma=0.01 * FREQUENCY,
         dofs=tuple(Dof(n, 3) for n in NODES),
         shapes=SHAPES.astype(complex),
         geometry=GEOMETRY,

@@ -263,7 +263,9 @@ def test_modes_of_a_registered_reader_are_a_test_s_modes(
 ) -> None:
     monkeypatch.setattr("acquisition.own_readers._REGISTERED", {})
     (tmp_path / "beam.xyz").write_text("24.5 153.9 429.2")
-    register_reader(".xyz", lambda path: ModalData(np.loadtxt(path), 1e-3 * np.loadtxt(path)))
+    register_reader(
+        ".xyz", lambda path: ModalData(frequency=np.loadtxt(path), frequency_sigma=1e-3 * np.loadtxt(path))
+    )
     modes = read(tmp_path / "beam.xyz")
     assert modes.identify(band=(100, 500)).table().iloc[:, 0].tolist() == [153.9, 429.2]
     with pytest.raises(InputError, match="read as tables of modes, of which a test has one"):

@@ -10,15 +10,26 @@ from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
 from updating.correlation.correlate import correlate
 from updating.simulation import frf_set, simulated
 
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (12,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(12,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=Material(210e9, 7850.0, 0.3),
+)
 POINTS = 0.4 * np.arange(1, 7)[:, None] / 6
 
 
 def seen(frequency: np.ndarray, constants: np.ndarray) -> Measured:
     n, m = constants.shape
     return Measured(
-        frequency, 1e-4 * frequency, np.full(m, 0.01), np.full(m, 1e-4), POINTS, tuple(range(11, 11 + n)),
-        np.full(n, n - 1), np.arange(n), constants, 0.01 * np.abs(constants), absolute=True,
+        frequency=frequency, frequency_sigma=1e-4 * frequency, damping=np.full(m, 0.01),
+        damping_sigma=np.full(m, 1e-4), points=POINTS, nodes=tuple(range(11, 11 + n)),
+        seen=np.full(n, n - 1), hit=np.arange(n), constants=constants,
+        constants_sigma=0.01 * np.abs(constants), absolute=True,
     )  # fmt: skip
 
 

@@ -159,8 +159,9 @@ def handed_over() -> Spec:
     regions = tuple(Region(name, (0.0, 1.0), (0.0, 1.0)) for name in BARS)
     size = np.ptp(np.array(own.made.places), axis=0)
     return Spec(
-        "matrices", float(size[0]), float(size[1]), float(size[2]), (), (), "imported", Material(MODULUS, DENSITY),
-        regions, (), Damping(), imported,
+        "matrices", length=float(size[0]), width=float(size[1]), thickness=float(size[2]), elements=(),
+        clamped=(), theory="imported", material=Material(MODULUS, DENSITY), regions=regions, masses=(),
+        damping=Damping(), imported=imported,
     )  # fmt: skip
 
 
@@ -232,7 +233,7 @@ def case(
     rng, spec = np.random.default_rng(seed), handed_over()
     frequency, shapes = specimen(hidden)
     measured = frequency[:modes] * (1 + scatter * rng.standard_normal(modes))
-    modal = ModalData(measured, scatter * frequency[:modes])
+    modal = ModalData(frequency=measured, frequency_sigma=scatter * frequency[:modes])
     if points:
         seen = shapes[[6 * node + axis for node, axis in points]][:, :modes]
         sigma = 5e-3 * np.sqrt(np.mean(seen**2, axis=0)) * np.ones_like(seen)
@@ -247,4 +248,4 @@ def case(
         )
     doubts = {"repeatability": scatter, "position_sigma": 0.0, "calibration": 0.02}
     test: Measured = measured_from_modes(modal, Axes(), spec, **doubts)
-    return Case("frame", spec, test, None, Tolerances({"E": 0.01, "density": 0.003}))
+    return Case("frame", spec, test, baseline=None, tolerances=Tolerances({"E": 0.01, "density": 0.003}))

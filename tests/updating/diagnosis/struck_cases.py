@@ -112,7 +112,7 @@ def struck_case(
     )
     before = _measured(bench, off, Faults(), roving, rng) if baseline else None
     after = _measured(bench, off, faults, roving, rng)
-    return Case("specimen", bench.nominal, after, before, tolerances=Tolerances(DOUBTS))
+    return Case("specimen", bench.nominal, after, baseline=before, tolerances=Tolerances(DOUBTS))
 
 
 def _ratios(bench: Bench, rng: np.random.Generator) -> np.ndarray:

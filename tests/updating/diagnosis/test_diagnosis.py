@@ -198,7 +198,7 @@ def test_two_causes_at_once_are_found_as_a_pair() -> None:
 def test_frequencies_alone_cannot_tell_factors_apart() -> None:
     beam = specimen(np.random.default_rng(4), E=0.85)
     frequency = beam.frequencies(5)
-    data = ModalData(frequency, 1e-4 * frequency)
+    data = ModalData(frequency=frequency, frequency_sigma=1e-4 * frequency)
     test = measured_from_modes(data, Axes(), BEAM)
     found = diagnose(case_of(test, BEAM))
     assert found.verdict == "class"

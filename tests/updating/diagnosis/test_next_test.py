@@ -28,16 +28,25 @@ from updating.test_data.axes import Axes
 from updating.test_data.taken import measured_from_modes
 from updating.tolerances import Tolerances
 
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(20,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=Material(210e9, 7850.0, 0.3),
+)
 DOUBTS = Tolerances({"E": 0.01, "density": 0.003, "thickness": 0.005, "length": 0.002, "width": 0.002}, 0.3)
 SCALED = ("E", "density", "thickness", "length")
 
 
 def modes_of(factor: float, count: int = 4) -> ModalData:
-    bare = ModalData(np.ones(1), np.ones(1))
+    bare = ModalData(frequency=np.ones(1), frequency_sigma=np.ones(1))
     predictor = Predictor(BEAM, measured_from_modes(bare, Axes(), BEAM))
     frequency = predictor.predict(State(factors={"E": factor}), count=count).frequency
-    return ModalData(frequency, 5e-4 * frequency)
+    return ModalData(frequency=frequency, frequency_sigma=5e-4 * frequency)
 
 
 def case_of(factor: float = 0.85, title: str = "beam") -> Case:

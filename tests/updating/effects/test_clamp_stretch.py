@@ -199,8 +199,16 @@ def struck(seed: int, low: float, high: float) -> Measured:
         0.5 * (2.0 / omega + 1e-6 * omega),
     )
     return Measured(
-        *(frequency, 1e-4 * frequency, damping, 0.03 * damping, points, tuple(range(1, n + 1))),
-        *(np.full(n, n - 1), np.arange(n), constants + sigma * rng.standard_normal(constants.shape), sigma),
+        frequency=frequency,
+        frequency_sigma=1e-4 * frequency,
+        damping=damping,
+        damping_sigma=0.03 * damping,
+        points=points,
+        nodes=tuple(range(1, n + 1)),
+        seen=np.full(n, n - 1),
+        hit=np.arange(n),
+        constants=constants + sigma * rng.standard_normal(constants.shape),
+        constants_sigma=sigma,
         absolute=True,
         repeatability=noise,
     )

@@ -257,7 +257,16 @@ def complex_beam(
 def test_a_patch_beside_the_complex_eigen_solution(*, clamped: bool, layer: tuple[float, float]) -> None:
     """Tape on segments 6 to 8 of ten, as in paper B, and a longer one."""
     edges = ("x0",) if clamped else ()
-    spec = Spec("beam", LENGTH, WIDTH, THICKNESS, (40,), edges, "euler-bernoulli", Material(210e9, 7850.0))
+    spec = Spec(
+        "beam",
+        length=LENGTH,
+        width=WIDTH,
+        thickness=THICKNESS,
+        elements=(40,),
+        clamped=edges,
+        theory="euler-bernoulli",
+        material=Material(210e9, 7850.0),
+    )
     spec = replace(spec, damping=replace(BEAM.damping, alpha=0.0, beta=0.0))
     predictor = Predictor(spec, blank(np.linspace(0.05, 0.5, 6)))
     for first, last in ((50, 80), (20, 55)):
@@ -272,7 +281,16 @@ def test_a_patch_beside_the_complex_eigen_solution(*, clamped: bool, layer: tupl
 @pytest.mark.parametrize("law", [{"alpha": 40.0}, {"beta": 1e-5}])
 def test_a_viscous_patch_beside_the_complex_eigen_solution(law: dict[str, float]) -> None:
     """C = alpha M + beta K of the covered part with its layer, by 100 textbook elements."""
-    spec = Spec("beam", LENGTH, WIDTH, THICKNESS, (40,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0))
+    spec = Spec(
+        "beam",
+        length=LENGTH,
+        width=WIDTH,
+        thickness=THICKNESS,
+        elements=(40,),
+        clamped=("x0",),
+        theory="euler-bernoulli",
+        material=Material(210e9, 7850.0),
+    )
     spec = replace(spec, damping=replace(BEAM.damping, alpha=0.0, beta=0.0))
     predictor = Predictor(spec, blank(np.linspace(0.05, 0.5, 6)))
     (k, m), (kp, mp) = (

@@ -50,7 +50,7 @@ def test_a_size_is_found_where_it_sits(
         observed(there.frequency, np.full(COUNT, 0.01), there.constants, measured.points, rng),
         directions=measured.directions,
     )
-    problem, _ = pose(Case("frame", specimen.spec, test, None, Tolerances()))
+    problem, _ = pose(Case("frame", specimen.spec, test, baseline=None, tolerances=Tolerances()))
     form = next(
         f
         for f in problem.forms(effect)

@@ -49,8 +49,9 @@ def free(sets: Mapping[str, Sequence[int]]) -> Spec:
     size = np.ptp(np.array(made.places), axis=0)
     regions = tuple(Region(name, (0.0, 1.0), (0.0, 1.0)) for name in BARS)
     return Spec(
-        "matrices", float(size[0]), float(size[1]), float(size[2]), (), (), "imported", Material(210e9, 7850.0),
-        regions, (), Damping(loss_factor=LOSS), imported,
+        "matrices", length=float(size[0]), width=float(size[1]), thickness=float(size[2]), elements=(),
+        clamped=(), theory="imported", material=Material(210e9, 7850.0), regions=regions, masses=(),
+        damping=Damping(loss_factor=LOSS), imported=imported,
     )  # fmt: skip
 
 
@@ -84,14 +85,14 @@ def case(
     sigma = 5e-3 * np.sqrt(np.mean(seen**2, axis=0)) * np.ones_like(seen)
     nodes = sorted({node for node, _ in POINTS})
     modal = ModalData(
-        frequency * (1 + 2e-4 * rng.standard_normal(10)), 2e-4 * frequency,
-        damping * np.exp(0.03 * rng.standard_normal(10)), 0.03 * damping,
+        frequency=frequency * (1 + 2e-4 * rng.standard_normal(10)), frequency_sigma=2e-4 * frequency,
+        damping=damping * np.exp(0.03 * rng.standard_normal(10)), damping_sigma=0.03 * damping,
         shapes=seen + sigma * rng.standard_normal(seen.shape), shape_sigma=sigma,
         dofs=tuple(Dof(node + 1, axis + 1) for node, axis in POINTS),
         geometry=Geometry(tuple(n + 1 for n in nodes), np.array(frame().made.places)[nodes]), scaled=True,
     )  # fmt: skip
     test = from_modes(modal, Axes(), spec, repeatability=2e-4, position_sigma=0.0, calibration=0.02)
-    return Case("frame", spec, test, None, Tolerances({"E": 0.005, "density": 0.003}))
+    return Case("frame", spec, test, baseline=None, tolerances=Tolerances({"E": 0.005, "density": 0.003}))
 
 
 WAYS = {"x": (0,), "z": (2,), "all": (0, 1, 2)}

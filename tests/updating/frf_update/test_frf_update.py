@@ -44,7 +44,17 @@ def beam(values: dict[str, tuple[float, float]], *, elements: int = 20) -> Spec:
         Region("taped", (0.5, 0.8), **taped),
         Region("bare", (0.8, 1.0), **bare),
     )
-    return Spec("beam", 1.0, 0.0315, 0.0046, (elements,), (), "euler-bernoulli", STEEL, regions)
+    return Spec(
+        "beam",
+        length=1.0,
+        width=0.0315,
+        thickness=0.0046,
+        elements=(elements,),
+        clamped=(),
+        theory="euler-bernoulli",
+        material=STEEL,
+        regions=regions,
+    )
 
 
 def taken(
@@ -55,8 +65,9 @@ def taken(
     seen, hit = (one, many) if roving else (many, one)
     nothing = np.full(6, np.nan)
     blank = Measured(
-        np.linspace(20, 450, 6), nothing, nothing, nothing, POINTS, tuple(range(1, 12)), seen, hit,
-        np.ones((11, 6)), np.ones((11, 6)), absolute=True,
+        frequency=np.linspace(20, 450, 6), frequency_sigma=nothing, damping=nothing, damping_sigma=nothing,
+        points=POINTS, nodes=tuple(range(1, 12)), seen=seen, hit=hit, constants=np.ones((11, 6)),
+        constants_sigma=np.ones((11, 6)), absolute=True,
     )  # fmt: skip
     there = Predictor(truth, blank)
     modes, poles = there.predict(count=6), there.complex_modes().poles[:6]

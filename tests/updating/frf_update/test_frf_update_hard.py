@@ -21,7 +21,15 @@ from updating.update.parameters.named import build_parameter_set, only_damps
 
 STEEL = Material(210e9, 7850.0, 0.3)
 CANTILEVER = Spec(
-    "beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", STEEL, damping=Damping(1.0, 5e-7)
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(20,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+    damping=Damping(1.0, 5e-7),
 )
 SPANS = {"root": (0.0, 0.15), "middle": (0.15, 0.27), "tip": (0.27, 0.4)}
 
@@ -39,9 +47,20 @@ def hit_beam(
     points, some = np.linspace(0.05, 0.4, 8)[:, None], np.full(5, 0.005)
     ends = np.full(8, 7), np.arange(8)
     blank = Measured(
-        np.linspace(25, 800, 5), some, some, some, points, tuple(range(1, 9)), *ends,
-        np.ones((8, 5)), np.ones((8, 5)), absolute=True, calibration=1e-4, repeatability=repeatability,
-    )  # fmt: skip
+        frequency=np.linspace(25, 800, 5),
+        frequency_sigma=some,
+        damping=some,
+        damping_sigma=some,
+        points=points,
+        nodes=tuple(range(1, 9)),
+        seen=ends[0],
+        hit=ends[1],
+        constants=np.ones((8, 5)),
+        constants_sigma=np.ones((8, 5)),
+        absolute=True,
+        calibration=1e-4,
+        repeatability=repeatability,
+    )
     there = Predictor(spec, blank)
     state = accepted_state(there, effect, values) if effect else NOMINAL
     modes = there.predict(state, count=5)

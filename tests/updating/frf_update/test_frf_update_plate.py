@@ -25,7 +25,18 @@ SPANS = {
 def plate(factors: dict[str, float]) -> Spec:
     regions = tuple(Region(name, *SPANS[name], E=210e9 * f) for name, f in factors.items())
     damping = Damping(alpha=1.0, beta=5e-7)
-    return Spec("plate", 0.376, 0.2, 0.003175, (10, 6), ("x0",), "kirchhoff", STEEL, regions, damping=damping)
+    return Spec(
+        "plate",
+        length=0.376,
+        width=0.2,
+        thickness=0.003175,
+        elements=(10, 6),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=STEEL,
+        regions=regions,
+        damping=damping,
+    )
 
 
 def measured() -> tuple[Measured, MeasuredFrfs]:

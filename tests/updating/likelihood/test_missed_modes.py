@@ -13,7 +13,17 @@ from updating.diagnosis.diagnose import pose
 from updating.likelihood.base import Setting
 from updating.likelihood.missed_modes import MissedModes
 
-SQUARE = Spec("plate", 0.3, 0.31, 0.003, (10, 10), (), "kirchhoff", STEEL, damping=PLATE.damping)
+SQUARE = Spec(
+    "plate",
+    length=0.3,
+    width=0.31,
+    thickness=0.003,
+    elements=(10, 10),
+    clamped=(),
+    theory="kirchhoff",
+    material=STEEL,
+    damping=PLATE.damping,
+)
 """Free and nearly square: its third and fourth bending modes are close."""
 MISSED, NEIGHBOUR, LOSS = 4, 3, 0.01
 

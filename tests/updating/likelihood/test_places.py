@@ -15,7 +15,17 @@ from updating.likelihood.base import Setting
 from updating.likelihood.places import Places
 
 SIGMA, ASIDE = 1e-3, 5e-4
-FREE = Spec("plate", 0.4, 0.3, 0.003, (12, 10), (), "kirchhoff", STEEL, damping=PLATE.damping)
+FREE = Spec(
+    "plate",
+    length=0.4,
+    width=0.3,
+    thickness=0.003,
+    elements=(12, 10),
+    clamped=(),
+    theory="kirchhoff",
+    material=STEEL,
+    damping=PLATE.damping,
+)
 
 
 def stated() -> Measured:

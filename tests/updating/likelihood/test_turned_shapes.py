@@ -18,7 +18,17 @@ from updating.likelihood.close_modes import CloseModes
 from updating.models.state import State
 
 MODES, SCATTER = 4, 5e-4
-SQUARE = Spec("plate", 0.3, 0.302, 0.003, (10, 10), (), "kirchhoff", STEEL, damping=PLATE.damping)
+SQUARE = Spec(
+    "plate",
+    length=0.3,
+    width=0.302,
+    thickness=0.003,
+    elements=(10, 10),
+    clamped=(),
+    theory="kirchhoff",
+    material=STEEL,
+    damping=PLATE.damping,
+)
 """Free and nearly square: its third and fourth bending modes are close."""
 
 

@@ -83,17 +83,17 @@ def spec_of(imported: Imported, masses: tuple[PointMass, ...] = (), regions: tup
     )
     return Spec(
         "matrices",
-        1.0,
-        1.0,
-        1.0,
-        (),
-        (),
-        "imported",
-        Material(E, DENSITY),
-        regions,
-        masses,
-        Damping(),
-        imported,
+        length=1.0,
+        width=1.0,
+        thickness=1.0,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(E, DENSITY),
+        regions=regions,
+        masses=masses,
+        damping=Damping(),
+        imported=imported,
     )
 
 
@@ -103,8 +103,9 @@ def seen_from(points: np.ndarray, directions: np.ndarray, frequency: np.ndarray 
     n, m = len(points), len(frequency)
     nothing = np.full(m, np.nan)
     return Measured(
-        frequency, np.zeros(m), nothing, nothing, points, tuple(range(1, n + 1)), np.full(n, n - 1), np.arange(n),
-        np.ones((n, m)), np.ones((n, m)), absolute=True, directions=directions,
+        frequency=frequency, frequency_sigma=np.zeros(m), damping=nothing, damping_sigma=nothing,
+        points=points, nodes=tuple(range(1, n + 1)), seen=np.full(n, n - 1), hit=np.arange(n),
+        constants=np.ones((n, m)), constants_sigma=np.ones((n, m)), absolute=True, directions=directions,
     )  # fmt: skip
 
 

@@ -20,7 +20,17 @@ HALVES = (
     Region("taped", (0.5, 0.8), alpha=9.6, beta=6.7e-6, loss_factor=0.004),
     Region("bare", (0.8, 1.0), alpha=3.0, beta=1e-7),
 )
-BEAM = Spec("beam", 1.0, 0.0315, 0.0046, (20,), (), "euler-bernoulli", STEEL, HALVES)
+BEAM = Spec(
+    "beam",
+    length=1.0,
+    width=0.0315,
+    thickness=0.0046,
+    elements=(20,),
+    clamped=(),
+    theory="euler-bernoulli",
+    material=STEEL,
+    regions=HALVES,
+)
 LINES = 2j * np.pi * np.linspace(5.0, 500.0, 60) + 2.0
 
 

@@ -67,7 +67,17 @@ def written(folder: Path, lines: list[str], name: str = "part.inp") -> Path:
 
 
 def frequencies(imported: Imported, count: int) -> np.ndarray:
-    spec = Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), imported=imported)
+    spec = Spec(
+        "matrices",
+        length=1,
+        width=1,
+        thickness=1,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1, 1),
+        imported=imported,
+    )
     return np.sqrt(build_structure(spec).eigen(count)[0]) / (2 * np.pi)
 
 
@@ -238,7 +248,18 @@ def structure_of(model: DeckModel) -> Structure:
     """Return the structure of a deck with its regions."""
     regions = tuple(Region(r.name, (0.0, 0.2)) for r in model.division.regions)
     return build_structure(
-        Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), regions, imported=made_of(model))
+        Spec(
+            "matrices",
+            length=1,
+            width=1,
+            thickness=1,
+            elements=(),
+            clamped=(),
+            theory="imported",
+            material=Material(1, 1),
+            regions=regions,
+            imported=made_of(model),
+        )
     )
 
 
@@ -283,8 +304,10 @@ def test_half_the_modulus_and_a_move_of_nodes_come_back_together(bricks: Bricks,
     true = 0.9 * number.high
     found = np.array(by_ccx(tmp_path, halves(bricks, "TOP", true, (0.5, 0.5), (1, 1)), 8))
     spec = replace(structure_of(model).spec, material=Material(210e9, 7850.0))
-    test = measured_from_modes(ModalData(found, 1e-4 * found), Axes(), spec)
-    result = update(Case("bar", spec, test, None, Tolerances({})), parameters=("E", "TOP.z"))
+    test = measured_from_modes(ModalData(frequency=found, frequency_sigma=1e-4 * found), Axes(), spec)
+    result = update(
+        Case("bar", spec, test, baseline=None, tolerances=Tolerances({})), parameters=("E", "TOP.z")
+    )
     values = {p.name: p for p in result.parameters}
     assert values["E"].factor == pytest.approx(0.5, rel=3e-3)
     assert values["TOP.z"].value == pytest.approx(true, rel=0.12)  # coarse bricks, a move of a quarter of one

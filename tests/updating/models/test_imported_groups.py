@@ -180,7 +180,16 @@ def predictor(frame: ModuleType, imported: Imported) -> Predictor:
     size = (whole.extents[1] - whole.extents[0]).tolist()
     regions = tuple(Region(name, (0.0, size[0]), (0.0, 1.0)) for name in names)
     spec = Spec(
-        "matrices", size[0], 1e-3, size[2], (), (), "imported", Material(1.0, 1.0), regions, imported=whole
+        "matrices",
+        length=size[0],
+        width=1e-3,
+        thickness=size[2],
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1.0, 1.0),
+        regions=regions,
+        imported=whole,
     )
     points = np.array([place for place, _ in list(frame.POINTS.values())[:4]])
     return Predictor(spec, seen_from(points, np.tile([1.0, 0.0, 0.0], (4, 1)), np.array([20.0, 300.0])))

@@ -91,9 +91,36 @@ def exported(spec: Spec) -> Imported:
 
 STEEL = Material(210e9, 7850.0, 0.3)
 BUILT = {
-    "beam": Spec("beam", 0.376, 0.03, 0.005, (30,), ("x0",), "euler-bernoulli", STEEL),
-    "plate": Spec("plate", 0.376, 0.2, 0.003175, (12, 8), ("x0",), "kirchhoff", STEEL),
-    "free plate": Spec("plate", 0.376, 0.2, 0.003175, (12, 8), (), "kirchhoff", STEEL),
+    "beam": Spec(
+        "beam",
+        length=0.376,
+        width=0.03,
+        thickness=0.005,
+        elements=(30,),
+        clamped=("x0",),
+        theory="euler-bernoulli",
+        material=STEEL,
+    ),
+    "plate": Spec(
+        "plate",
+        length=0.376,
+        width=0.2,
+        thickness=0.003175,
+        elements=(12, 8),
+        clamped=("x0",),
+        theory="kirchhoff",
+        material=STEEL,
+    ),
+    "free plate": Spec(
+        "plate",
+        length=0.376,
+        width=0.2,
+        thickness=0.003175,
+        elements=(12, 8),
+        clamped=(),
+        theory="kirchhoff",
+        material=STEEL,
+    ),
 }
 
 
@@ -469,7 +496,18 @@ def test_a_reduced_basis_knows_regions_that_change() -> None:
     )
     imported = Imported(sum(stiff[1:], stiff[0]), sum(heavy[1:], heavy[0]), table, tuple(stiff), tuple(heavy))
     regions = tuple(Region(f"r{i}", (0.0, 1.0)) for i in range(4))
-    spec = Spec("matrices", LENGTH, 0.1, 0.1, (), (), "imported", Material(1, 1), regions, imported=imported)
+    spec = Spec(
+        "matrices",
+        length=LENGTH,
+        width=0.1,
+        thickness=0.1,
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=Material(1, 1),
+        regions=regions,
+        imported=imported,
+    )
     structure = build_structure(spec)
     reduced = reduce_structure(structure, table.places[[20, 79]], modes=10)
     assert reduced.basis.shape[1] < 80

@@ -72,7 +72,16 @@ def test_it_converges_as_the_fourth_power_of_the_mesh() -> None:
 
 def test_twist_dies_out_at_the_edges_of_a_stocky_plate_on_elements_no_wider_than_it_is_thick() -> None:
     """Within h / sqrt(10) of an edge; without narrow elements there it is 0.16 % off."""
-    stocky = Spec("plate", 0.25, 0.2, 0.03, (10, 8), (), "mindlin", STEEL)
+    stocky = Spec(
+        "plate",
+        length=0.25,
+        width=0.2,
+        thickness=0.03,
+        elements=(10, 8),
+        clamped=(),
+        theory="mindlin",
+        material=STEEL,
+    )
     finer = frequencies(replace(stocky, elements=(22, 18)), 8)
     assert frequencies(stocky, 8) == pytest.approx(finer, rel=2e-4)
 
@@ -91,7 +100,16 @@ def test_thin_plates_do_not_lock(clamped: tuple[str, ...]) -> None:
 )
 def test_square_plates_are_the_published_ones(clamped: tuple[str, ...], known: list[float]) -> None:
     """h / a = 0.1, omega a^2 sqrt(rho h / D) / pi^2: Liew, Xiang and Kitipornchai, Comput. Struct. 49 (1993) 1-29."""
-    plate = Spec("plate", 1.0, 1.0, 0.1, (14, 14), clamped, "mindlin", STEEL)
+    plate = Spec(
+        "plate",
+        length=1.0,
+        width=1.0,
+        thickness=0.1,
+        elements=(14, 14),
+        clamped=clamped,
+        theory="mindlin",
+        material=STEEL,
+    )
     unit = np.pi / 2 * np.sqrt(STEEL.E * 0.1**3 / 12 / (1 - 0.3**2) / (STEEL.density * 0.1))
     assert frequencies(plate, len(known)) / unit == pytest.approx(known, abs=0.0015)
 

@@ -12,8 +12,26 @@ from acquisition.errors import StudyError
 from updating import PointMass, Predictor, Region, Spec, build_structure
 from updating.models.state import State
 
-SLENDER = Spec("beam", 1.0, 0.02, 0.005, (40,), ("x0",), "euler-bernoulli", STEEL)
-THICK = Spec("beam", 0.5, 0.03, 0.05, (60,), ("x0",), "timoshenko", STEEL)
+SLENDER = Spec(
+    "beam",
+    length=1.0,
+    width=0.02,
+    thickness=0.005,
+    elements=(40,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+)
+THICK = Spec(
+    "beam",
+    length=0.5,
+    width=0.03,
+    thickness=0.05,
+    elements=(60,),
+    clamped=("x0",),
+    theory="timoshenko",
+    material=STEEL,
+)
 
 
 def frequencies(spec: Spec, count: int) -> np.ndarray:
@@ -83,7 +101,16 @@ def test_the_papers_plate_has_the_before_column_of_table_3() -> None:
 )
 def test_square_plates_have_the_published_eigenvalues(clamped: tuple[str, ...], values: list[float]) -> None:
     """Leissa (1973), the free edges after Gorman and Liew, who converge a little lower than his Ritz bounds."""
-    spec = Spec("plate", 0.3, 0.3, 0.002, (16, 16), clamped, "kirchhoff", STEEL)
+    spec = Spec(
+        "plate",
+        length=0.3,
+        width=0.3,
+        thickness=0.002,
+        elements=(16, 16),
+        clamped=clamped,
+        theory="kirchhoff",
+        material=STEEL,
+    )
     rigidity = STEEL.E * spec.thickness**3 / (12 * (1 - STEEL.poisson**2))
     unit = np.sqrt(rigidity / (STEEL.density * spec.thickness)) / spec.length**2 / (2 * np.pi)
     assert frequencies(spec, 6) == pytest.approx(np.array(values) * unit, rel=1e-3)

@@ -12,7 +12,8 @@ from acquisition.errors import EstimationError
 from acquisition.quantities import hertz
 from updating import Measured, Predictor
 from updating.models.state import State
-from updating.prediction.matching import mac_of_constants, match, pair_modes
+from updating.prediction.assignment import mac_of_constants, match
+from updating.prediction.matching import pair_modes
 from updating.prediction.prediction import Prediction
 
 LOOK = Predictor(BEAM, blank(POINTS))

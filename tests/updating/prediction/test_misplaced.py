@@ -15,7 +15,16 @@ from updating.prediction.prediction import Prediction
 from updating.update.data.shape_errors import constant_errors
 
 LENGTH, MODES, SIGMA = 1.0, 4, 2e-3
-BEAM = Spec("beam", LENGTH, 0.03, 0.01, (40,), (), "euler-bernoulli", STEEL)
+BEAM = Spec(
+    "beam",
+    length=LENGTH,
+    width=0.03,
+    thickness=0.01,
+    elements=(40,),
+    clamped=(),
+    theory="euler-bernoulli",
+    material=STEEL,
+)
 MASS = 7850.0 * LENGTH * 0.03 * 0.01
 HITS = np.linspace(0.06, 0.94, 12)
 

@@ -137,7 +137,17 @@ def test_points_of_a_wider_plate_stay_where_they_are(clamped: tuple[str, ...], g
 def test_modes_that_are_all_but_double_turn_no_faster_than_anything_bears(mass: float) -> None:
     """A speck in a corner makes of two double modes two that a change of width mixes at once."""
     speck = (PointMass((0.3, 0.3), mass),) if mass else ()
-    square = Spec("plate", 0.3, 0.3, 0.003, (8, 8), (), "kirchhoff", PLATE.material, masses=speck)
+    square = Spec(
+        "plate",
+        length=0.3,
+        width=0.3,
+        thickness=0.003,
+        elements=(8, 8),
+        clamped=(),
+        theory="kirchhoff",
+        material=PLATE.material,
+        masses=speck,
+    )
     points = np.stack(np.meshgrid([0.02, 0.11, 0.28], [0.01, 0.2, 0.29], indexing="ij"), axis=-1).reshape(
         -1, 2
     )

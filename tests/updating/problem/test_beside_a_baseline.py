@@ -31,7 +31,7 @@ def problem() -> SpecimenProblem:
     """A beam off by tolerances as wide as they come, and then thicker than it was."""
     changed = {**SPECIMEN, "thickness": SPECIMEN["thickness"] * THICKER}
     doubts = Tolerances({"E": 0.2, "thickness": 0.1, "length": 0.01})
-    case = Case("a beam", BEAM, measured(changed), measured(SPECIMEN), doubts)
+    case = Case("a beam", BEAM, measured(changed), baseline=measured(SPECIMEN), tolerances=doubts)
     return pose(case)[0]
 
 

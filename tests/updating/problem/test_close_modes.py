@@ -32,17 +32,32 @@ def clamped_plate(width: float, *, off: float) -> SpecimenProblem:
     sigma = 0.01 * np.sqrt(np.mean(constants**2, axis=0)) * np.ones_like(constants)
     frequency = omega / (2 * np.pi) * np.exp(NOISE * rng.standard_normal(MODES))
     measured = Measured(
-        *(frequency, 1e-5 * frequency, np.full(MODES, np.nan), np.full(MODES, np.nan)),
-        *(points, tuple(range(1, n + 1)), np.full(n, n - 1), np.arange(n)),
-        *(constants + sigma * rng.standard_normal(constants.shape), sigma),
+        frequency=frequency,
+        frequency_sigma=1e-5 * frequency,
+        damping=np.full(MODES, np.nan),
+        damping_sigma=np.full(MODES, np.nan),
+        points=points,
+        nodes=tuple(range(1, n + 1)),
+        seen=np.full(n, n - 1),
+        hit=np.arange(n),
+        constants=constants + sigma * rng.standard_normal(constants.shape),
+        constants_sigma=sigma,
         absolute=True,
         repeatability=NOISE,
     )
     spec = Spec(
-        "plate", SIDE, width, THICKNESS, (16, 16), ("x0",), "mindlin", STEEL, masses=(PointMass(AT, SENSOR),)
+        "plate",
+        length=SIDE,
+        width=width,
+        thickness=THICKNESS,
+        elements=(16, 16),
+        clamped=("x0",),
+        theory="mindlin",
+        material=STEEL,
+        masses=(PointMass(AT, SENSOR),),
     )
     doubts = Tolerances({"E": 0.01, "density": 0.003, "length": DOUBT, "width": DOUBT})
-    return pose(Case("close", spec, measured, None, doubts))[0]
+    return pose(Case("close", spec, measured, baseline=None, tolerances=doubts))[0]
 
 
 @pytest.mark.long

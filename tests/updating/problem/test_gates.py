@@ -14,14 +14,8 @@ from acquisition.errors import StudyError
 from acquisition.quantities import hertz
 from updating import Measured, Predictor, Region, Spec, build_structure
 from updating.models.state import State
-from updating.problem.gates import (
-    discrepancy,
-    missing_mode,
-    notes_on,
-    on_levels,
-    on_modes,
-    theory_error,
-)
+from updating.problem.gates import missing_mode, notes_on, on_levels, on_modes
+from updating.problem.theory_error import discrepancy, theory_error
 
 THIN = replace(BEAM, theory="euler-bernoulli")
 POINTS = np.linspace(0.0752, 0.376, 5)
@@ -79,7 +73,16 @@ def test_the_thick_plate_of_this_file_is_the_published_one(
     clamped: tuple[str, ...], known: list[float]
 ) -> None:
     """Square plates of h / a = 0.1, omega a^2 sqrt(rho h / D) / pi^2: Liew, Xiang and Kitipornchai (1993)."""
-    plate = Spec("plate", 1.0, 1.0, 0.1, (4, 4), clamped, "kirchhoff", STEEL)
+    plate = Spec(
+        "plate",
+        length=1.0,
+        width=1.0,
+        thickness=0.1,
+        elements=(4, 4),
+        clamped=clamped,
+        theory="kirchhoff",
+        material=STEEL,
+    )
     unit = np.pi / 2 * np.sqrt(STEEL.E * 0.1**3 / 12 / (1 - 0.3**2) / (STEEL.density * 0.1))
     assert thick_plate(plate, len(known), 12) / unit == pytest.approx(known, abs=0.0015)
 

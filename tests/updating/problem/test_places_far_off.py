@@ -109,6 +109,6 @@ def test_the_columns_of_places_are_the_slopes_of_what_is_left(what: str) -> None
 
 def test_places_beside_a_baseline_stay_where_they_are_stated() -> None:
     test = hit(STATED + AWAY)
-    case = Case("a beam", BEAM, test, test, tolerances=Tolerances({"E": 1e-6}))
+    case = Case("a beam", BEAM, test, baseline=test, tolerances=Tolerances({"E": 1e-6}))
     problem = pose(case)[0]
     assert not problem.wide and problem.linearised == len(problem.names)

@@ -16,7 +16,16 @@ from updating.problem.width import stiffening
 
 
 def beam(width: float, *, poisson: float = 0.3, clamped: tuple[str, ...] = ("x0",)) -> Spec:
-    return Spec("beam", 0.4, width, 0.002, (30,), clamped, "timoshenko", Material(200e9, 7800.0, poisson))
+    return Spec(
+        "beam",
+        length=0.4,
+        width=width,
+        thickness=0.002,
+        elements=(30,),
+        clamped=clamped,
+        theory="timoshenko",
+        material=Material(200e9, 7800.0, poisson),
+    )
 
 
 @pytest.mark.parametrize("width", [0.02, 0.03, 0.05])
@@ -35,7 +44,16 @@ def test_a_free_beam_misses_more_the_higher_the_mode_and_nothing_without_poisson
 
 
 def test_a_plate_misses_nothing() -> None:
-    plate = Spec("plate", 0.4, 0.03, 0.002, (30, 4), ("x0",), "mindlin", Material(200e9, 7800.0, 0.3))
+    plate = Spec(
+        "plate",
+        length=0.4,
+        width=0.03,
+        thickness=0.002,
+        elements=(30, 4),
+        clamped=("x0",),
+        theory="mindlin",
+        material=Material(200e9, 7800.0, 0.3),
+    )
     assert not stiffening(plate, np.arange(3)).any()
 
 
@@ -48,7 +66,16 @@ def test_bricks_are_as_much_stiffer(tmp_path: Path) -> None:
     points = np.array([[x, width / 2] for x in along[8::6]])
     frequency, shapes = modes(tmp_path, bricks, 14, points)
     bending = frequency[np.abs(shapes).max(axis=0) > 0.2 * np.abs(shapes).max()][:4]
-    spec = Spec("beam", length, width, thickness, (40,), ("x0",), "timoshenko", Material(205e9, 7850.0, 0.3))
+    spec = Spec(
+        "beam",
+        length=length,
+        width=width,
+        thickness=thickness,
+        elements=(40,),
+        clamped=("x0",),
+        theory="timoshenko",
+        material=Material(205e9, 7850.0, 0.3),
+    )
     own = Predictor(spec, blank(np.array([length]))).predict(count=4).frequency
     assert np.log(bending / own) == pytest.approx(stiffening(spec, np.arange(4)), abs=1e-3)
 

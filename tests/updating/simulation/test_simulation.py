@@ -31,8 +31,10 @@ STEEL = Material(210e9, 7850.0, 0.3)
 LENGTH, WIDTH, THICK = 0.5, 0.03, 0.005
 EI, MU = 210e9 * WIDTH * THICK**3 / 12, 7850.0 * WIDTH * THICK
 LOSS = 0.01
-CLAMPED = Spec("beam", LENGTH, WIDTH, THICK, (120,), ("x0",), "euler-bernoulli", STEEL,
-               damping=Damping(loss_factor=LOSS))  # fmt: skip
+CLAMPED = Spec(
+    "beam", length=LENGTH, width=WIDTH, thickness=THICK, elements=(120,), clamped=("x0",),
+    theory="euler-bernoulli", material=STEEL, damping=Damping(loss_factor=LOSS),
+)  # fmt: skip
 FREE = replace(CLAMPED, clamped=())
 HALVES = (
     Region("bare", (0.0, 0.25), alpha=3.0, beta=1e-6),
@@ -40,7 +42,15 @@ HALVES = (
 )
 MIXED = replace(CLAMPED, damping=Damping(), regions=HALVES)
 PLATE = Spec(
-    "plate", 0.4, 0.3, 0.004, (16, 12), ("x0",), "kirchhoff", STEEL, damping=Damping(alpha=8.0, beta=1e-6)
+    "plate",
+    length=0.4,
+    width=0.3,
+    thickness=0.004,
+    elements=(16, 12),
+    clamped=("x0",),
+    theory="kirchhoff",
+    material=STEEL,
+    damping=Damping(alpha=8.0, beta=1e-6),
 )
 POINTS = np.array([0.2, 0.5])
 BAND = np.linspace(3.0, 1500.0, 400)
@@ -419,7 +429,17 @@ def test_imported_matrices_do_what_the_beam_does_that_they_are_of() -> None:
 def test_loss_factors_by_region_are_solved_line_by_line() -> None:
     """With structural damping that couples modes no sum of conjugate poles is the FRF: it was 1 % off."""
     halves = (Region("stiff", (0.0, 0.2), loss_factor=0.0), Region("lossy", (0.2, 0.376), loss_factor=0.1))
-    spec = Spec("beam", 0.376, 0.0305, 0.0047625, (8,), ("x0",), "euler-bernoulli", STEEL, halves)
+    spec = Spec(
+        "beam",
+        length=0.376,
+        width=0.0305,
+        thickness=0.0047625,
+        elements=(8,),
+        clamped=("x0",),
+        theory="euler-bernoulli",
+        material=STEEL,
+        regions=halves,
+    )
     model = simulated(Predictor(spec, blank(np.linspace(0.1, 0.376, 4))))
     s = 2j * np.pi * np.linspace(5.0, 1500.0, 300)
     seen, hit = np.arange(4), np.full(4, 3)

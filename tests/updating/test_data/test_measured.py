@@ -26,7 +26,12 @@ def modal(directions: tuple[int, ...] = (3, 3, 3), coordinates: np.ndarray | Non
     shapes = SHAPES.astype(complex)
     dofs = tuple(Dof(n, d) for n, d in zip(NODES, directions, strict=True))
     return ModalData(
-        FREQUENCY, 0.01 * FREQUENCY, dofs=dofs, shapes=shapes, scaled=True, geometry=Geometry(NODES, places)
+        frequency=FREQUENCY,
+        frequency_sigma=0.01 * FREQUENCY,
+        dofs=dofs,
+        shapes=shapes,
+        scaled=True,
+        geometry=Geometry(NODES, places),
     )
 
 
@@ -59,7 +64,7 @@ def test_complex_shapes_of_any_phase_are_turned_to_the_real_axis() -> None:
 
 
 def test_frequencies_alone_have_no_shapes() -> None:
-    data = ModalData(np.array([10.0, 20.0]), np.array([0.1, np.nan]))
+    data = ModalData(frequency=np.array([10.0, 20.0]), frequency_sigma=np.array([0.1, np.nan]))
     test = measured_from_modes(data, Axes(), BEAM, repeatability=1e-3)
     assert not test.has_shapes
     assert test.constants.shape == (0, 2)

@@ -69,11 +69,12 @@ def storeys(
     imported = Imported(whole, Sparse(sparse.csr_array(MASS * np.eye(n))), table, parts, ())
     spec = spec_of(imported, regions=tuple(Region(f"storey_{i + 1}", (0, 1), (0, 1)) for i in own))
     test = Measured(
-        f, np.zeros(modes), nothing, nothing, points[:rows], tuple(range(1, rows + 1)), np.arange(rows),
-        np.full(rows, -1), moved, size, absolute=False, repeated=False, repeatability=sigma, position_sigma=0.0,
-        directions=np.tile([1.0, 0.0, 0.0], (rows, 1)),
+        frequency=f, frequency_sigma=np.zeros(modes), damping=nothing, damping_sigma=nothing,
+        points=points[:rows], nodes=tuple(range(1, rows + 1)), seen=np.arange(rows), hit=np.full(rows, -1),
+        constants=moved, constants_sigma=size, absolute=False, repeated=False, repeatability=sigma,
+        position_sigma=0.0, directions=np.tile([1.0, 0.0, 0.0], (rows, 1)),
     )  # fmt: skip
-    return Case("storeys", spec, test, None, tolerances)
+    return Case("storeys", spec, test, baseline=None, tolerances=tolerances)
 
 
 def turned(case: Case, **options: object) -> Update:

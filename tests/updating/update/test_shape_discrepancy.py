@@ -48,13 +48,15 @@ def measured(
     points[:, 0] = LENGTH * NODES / ELEMENTS
     nothing = np.full(MODES, np.nan)
     test = Measured(
-        frequency * (1 + SCATTER * rng.standard_normal(MODES)), np.zeros(MODES), nothing, nothing, points,
-        tuple(range(1, POINTS + 1)), np.arange(POINTS), np.full(POINTS, -1), shapes,
-        (stated or 0.02) * size * np.ones_like(shapes), absolute=False, repeated=False, repeatability=SCATTER,
-        position_sigma=0.0, directions=np.tile([0.0, 0.0, 1.0], (POINTS, 1)), guessed=stated is None,
+        frequency=frequency * (1 + SCATTER * rng.standard_normal(MODES)), frequency_sigma=np.zeros(MODES),
+        damping=nothing, damping_sigma=nothing, points=points, nodes=tuple(range(1, POINTS + 1)),
+        seen=np.arange(POINTS), hit=np.full(POINTS, -1), constants=shapes,
+        constants_sigma=(stated or 0.02) * size * np.ones_like(shapes), absolute=False, repeated=False,
+        repeatability=SCATTER, position_sigma=0.0, directions=np.tile([0.0, 0.0, 1.0], (POINTS, 1)),
+        guessed=stated is None,
     )  # fmt: skip
     spec = spec_of(imported_beam(ELEMENTS, parts=EDGES[1:-1]))
-    return Case("bridge", spec, test, None, Tolerances({"E": TOLERANCE}))
+    return Case("bridge", spec, test, baseline=None, tolerances=Tolerances({"E": TOLERANCE}))
 
 
 def both(case: Case) -> Update:

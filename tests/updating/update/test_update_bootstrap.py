@@ -21,15 +21,29 @@ from updating.update import bootstrap, redrawn_frequencies, update
 
 STEEL = Material(210e9, 7850.0, 0.3)
 PARTS = (Region("root", (0.0, 0.1)), Region("middle", (0.1, 0.25)), Region("tip", (0.25, 0.4)))
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (12,), ("x0",), "euler-bernoulli", STEEL, regions=PARTS)
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(12,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+    regions=PARTS,
+)
 NAMES = ["root.E", "tip.E"]
 
 
 def case_of(tolerance: float = 0.3, repeatability: float = 0.0) -> Case:
     spec = replace(BEAM, regions=(replace(PARTS[0], E=0.9 * 210e9), *PARTS[1:]))
     f = np.sqrt(build_structure(spec).eigen(6)[0]) / (2 * np.pi)
-    test = measured_from_modes(ModalData(f, 1e-3 * f), Axes(), BEAM, repeatability=repeatability)
-    return Case("bar", BEAM, test, None, Tolerances({"E": tolerance, "density": tolerance}))
+    test = measured_from_modes(
+        ModalData(frequency=f, frequency_sigma=1e-3 * f), Axes(), BEAM, repeatability=repeatability
+    )
+    return Case(
+        "bar", BEAM, test, baseline=None, tolerances=Tolerances({"E": tolerance, "density": tolerance})
+    )
 
 
 @pytest.mark.long

@@ -65,9 +65,18 @@ def updated(folder: Path, deck: list[str], found: np.ndarray, *parameters: str) 
     regions = (Region("FOOT", (0.0, 0.05)), Region("WALL", (0.049, 0.051)))
     size = imported.extents[1] - imported.extents[0]
     steel = Material(210e9, 7850.0)
-    spec = Spec("matrices", *size.tolist(), (), (), "imported", steel, regions, imported=imported)
-    test = measured_from_modes(ModalData(found, 1e-4 * found), Axes(), spec)
-    case = Case("angle", spec, test, None, Tolerances({}))
+    spec = Spec(
+        "matrices",
+        **dict(zip(("length", "width", "thickness"), size.tolist(), strict=True)),
+        elements=(),
+        clamped=(),
+        theory="imported",
+        material=steel,
+        regions=regions,
+        imported=imported,
+    )
+    test = measured_from_modes(ModalData(frequency=found, frequency_sigma=1e-4 * found), Axes(), spec)
+    case = Case("angle", spec, test, baseline=None, tolerances=Tolerances({}))
     return update(case, parameters=parameters)
 
 

@@ -12,7 +12,17 @@ from updating.update.statistics.identifiability import best_subset
 
 STEEL = Material(210e9, 7850.0, 0.3)
 PARTS = (Region("root", (0.0, 0.1)), Region("middle", (0.1, 0.25)), Region("tip", (0.25, 0.4)))
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (12,), ("x0",), "euler-bernoulli", STEEL, regions=PARTS)
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(12,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+    regions=PARTS,
+)
 DOUBTS = Tolerances({"E": 0.3, "density": 0.3, "thickness": 0.3})
 
 
@@ -21,8 +31,14 @@ def frequencies(spec: Spec, count: int = 6) -> np.ndarray:
 
 
 def case_of(measured: np.ndarray, doubts: Tolerances = DOUBTS, spec: Spec = BEAM) -> Case:
-    data = ModalData(measured, 1e-3 * measured)
-    return Case("bar", spec, measured_from_modes(data, Axes(), spec, repeatability=0.0), None, doubts)
+    data = ModalData(frequency=measured, frequency_sigma=1e-3 * measured)
+    return Case(
+        "bar",
+        spec,
+        measured_from_modes(data, Axes(), spec, repeatability=0.0),
+        baseline=None,
+        tolerances=doubts,
+    )
 
 
 def softer_root() -> np.ndarray:
@@ -117,8 +133,14 @@ def shapes_at(dofs: tuple[Dof, ...], shapes: np.ndarray) -> Case:
         tuple(range(1, len(dofs) + 1)),
         np.column_stack([np.linspace(0, 0.4, len(dofs)), np.zeros((len(dofs), 2))]),
     )
-    data = ModalData(np.array([200.0]), np.array([1.0]), dofs=dofs, shapes=shapes[:, None], geometry=geometry)
-    return Case("bar", BEAM, measured_from_modes(data, Axes(), BEAM), None, DOUBTS)
+    data = ModalData(
+        frequency=np.array([200.0]),
+        frequency_sigma=np.array([1.0]),
+        dofs=dofs,
+        shapes=shapes[:, None],
+        geometry=geometry,
+    )
+    return Case("bar", BEAM, measured_from_modes(data, Axes(), BEAM), baseline=None, tolerances=DOUBTS)
 
 
 def test_no_common_mode_is_said() -> None:
@@ -130,8 +152,8 @@ def test_no_common_mode_is_said() -> None:
 
 
 def test_a_frequency_far_from_all_of_the_model_is_none_of_its_modes() -> None:
-    data = ModalData(np.array([1e6]), np.array([1.0]))
-    case = Case("bar", BEAM, measured_from_modes(data, Axes(), BEAM), None, DOUBTS)
+    data = ModalData(frequency=np.array([1e6]), frequency_sigma=np.array([1.0]))
+    case = Case("bar", BEAM, measured_from_modes(data, Axes(), BEAM), baseline=None, tolerances=DOUBTS)
     with pytest.raises(EstimationError, match="no modes in common"):
         update(case, parameters=["E"], weights="relative")
 

@@ -11,18 +11,18 @@ from updating.update import Update, update
 
 STEEL = Material(210e9, 7850.0, 0.3)
 BEAM = Spec(
-    "beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", STEEL,
-    masses=(PointMass((0.376,), 0.0),),
+    "beam", length=0.376, width=0.0305, thickness=0.0047625, elements=(10,), clamped=("x0",),
+    theory="euler-bernoulli", material=STEEL, masses=(PointMass((0.376,), 0.0),),
 )  # fmt: skip
 PLATE = Spec(
     "plate",
-    0.376,
-    0.2,
-    0.003175,
-    (19, 10),
-    ("x0",),
-    "kirchhoff",
-    STEEL,
+    length=0.376,
+    width=0.2,
+    thickness=0.003175,
+    elements=(19, 10),
+    clamped=("x0",),
+    theory="kirchhoff",
+    material=STEEL,
     masses=(PointMass((0.376, 0.2), 0.0),),
 )
 MEASURED = {
@@ -33,9 +33,9 @@ MEASURED = {
 
 def case_of(spec: Spec) -> Case:
     frequency = np.array(MEASURED[spec.kind])
-    data = ModalData(frequency, 0.0005 * frequency)
+    data = ModalData(frequency=frequency, frequency_sigma=0.0005 * frequency)
     doubts = Tolerances({"E": 0.01, "length": 0.002})
-    return Case(spec.kind, spec, measured_from_modes(data, Axes(), spec), None, doubts)
+    return Case(spec.kind, spec, measured_from_modes(data, Axes(), spec), baseline=None, tolerances=doubts)
 
 
 def joint(*, beam: tuple[str, ...], plate: tuple[str, ...], shared: tuple[str, ...]) -> Update:

@@ -14,15 +14,27 @@ from updating.update.statistics.mixture import Mixture, laplace
 
 STEEL = Material(210e9, 7850.0, 0.3)
 HALVES = (Region("left", (0.0, 0.2)), Region("right", (0.2, 0.4)))
-FREE = Spec("beam", 0.4, 0.03, 0.005, (16,), (), "euler-bernoulli", STEEL, regions=HALVES)
+FREE = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(16,),
+    clamped=(),
+    theory="euler-bernoulli",
+    material=STEEL,
+    regions=HALVES,
+)
 
 
 def case_of(spec: Spec, left: float, right: float) -> Case:
     regions = (replace(HALVES[0], E=left * 210e9), replace(HALVES[1], E=right * 210e9))
     values = build_structure(replace(spec, regions=regions)).eigen(8)[0]
     f = np.sqrt(np.maximum(values, 0))[2 if not spec.clamped else 0 :] / (2 * np.pi)
-    test = measured_from_modes(ModalData(f, 1e-4 * f), Axes(), spec, repeatability=0.0)
-    return Case("bar", spec, test, None, Tolerances({"E": 0.3}))
+    test = measured_from_modes(
+        ModalData(frequency=f, frequency_sigma=1e-4 * f), Axes(), spec, repeatability=0.0
+    )
+    return Case("bar", spec, test, baseline=None, tolerances=Tolerances({"E": 0.3}))
 
 
 def test_a_free_beam_of_two_halves_has_its_mirror_image_in_the_interval() -> None:

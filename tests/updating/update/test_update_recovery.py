@@ -22,9 +22,27 @@ from updating import (
 from updating.update import update
 
 STEEL = Material(210e9, 7850.0, 0.3)
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (12,), ("x0",), "euler-bernoulli", STEEL)
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(12,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+)
 PARTS = (Region("root", (0.0, 0.1)), Region("middle", (0.1, 0.25)), Region("tip", (0.25, 0.4)))
-PLATE = Spec("plate", 0.4, 0.2, 0.004, (12, 6), ("x0",), "kirchhoff", STEEL)
+PLATE = Spec(
+    "plate",
+    length=0.4,
+    width=0.2,
+    thickness=0.004,
+    elements=(12, 6),
+    clamped=("x0",),
+    theory="kirchhoff",
+    material=STEEL,
+)
 DOUBTS = Tolerances({"E": 0.3, "density": 0.3, "thickness": 0.3, "length": 0.1})
 
 
@@ -33,9 +51,9 @@ def frequencies(spec: Spec, count: int) -> np.ndarray:
 
 
 def case_of(model: Spec, measured: np.ndarray, sigma: float = 1e-5, title: str = "specimen") -> Case:
-    data = ModalData(measured, sigma * measured)
+    data = ModalData(frequency=measured, frequency_sigma=sigma * measured)
     test = measured_from_modes(data, Axes(), model, repeatability=0.0, title=title)
-    return Case(title, model, test, None, DOUBTS)
+    return Case(title, model, test, baseline=None, tolerances=DOUBTS)
 
 
 def regional(spec: Spec, names: list[str], factors: list[float]) -> Spec:

@@ -10,12 +10,12 @@ from updating.update.building import build_specimen
 
 STEEL = Material(210e9, 7850.0, 0.3)
 BEAM = Spec(
-    "beam", 0.4, 0.03, 0.005, (12,), ("x0",), "timoshenko", STEEL,
-    regions=(Region("root", (0.0, 0.1)), Region("tip", (0.3, 0.4), density=7000.0)),
+    "beam", length=0.4, width=0.03, thickness=0.005, elements=(12,), clamped=("x0",), theory="timoshenko",
+    material=STEEL, regions=(Region("root", (0.0, 0.1)), Region("tip", (0.3, 0.4), density=7000.0)),
 )  # fmt: skip
 PLATE = Spec(
-    "plate", 0.4, 0.2, 0.004, (10, 6), ("x0",), "kirchhoff", STEEL,
-    regions=(Region("root", (0.0, 0.1)), Region("corner", (0.2, 0.4), (0.1, 0.2))),
+    "plate", length=0.4, width=0.2, thickness=0.004, elements=(10, 6), clamped=("x0",), theory="kirchhoff",
+    material=STEEL, regions=(Region("root", (0.0, 0.1)), Region("corner", (0.2, 0.4), (0.1, 0.2))),
 )  # fmt: skip
 
 
@@ -27,8 +27,10 @@ def case_of(spec: Spec, count: int = 5) -> Case:
     f = frequencies(spec, count)
     nothing = np.full(count, np.nan)
     measured = Measured(
-        f, 1e-4 * f, nothing, nothing, np.zeros((0, len(spec.elements))), (), np.zeros(0, dtype=int),
-        np.zeros(0, dtype=int), np.zeros((0, count)), np.zeros((0, count)), absolute=False,
+        frequency=f, frequency_sigma=1e-4 * f, damping=nothing, damping_sigma=nothing,
+        points=np.zeros((0, len(spec.elements))), nodes=(), seen=np.zeros(0, dtype=int),
+        hit=np.zeros(0, dtype=int), constants=np.zeros((0, count)), constants_sigma=np.zeros((0, count)),
+        absolute=False,
     )  # fmt: skip
     return Case("test", spec, measured)
 

@@ -13,7 +13,17 @@ from updating.update.run import fit
 
 STEEL = Material(210e9, 7850.0, 0.3)
 PARTS = (Region("root", (0.0, 0.1)), Region("middle", (0.1, 0.3)), Region("tip", (0.3, 0.4)))
-BEAM = Spec("beam", 0.4, 0.03, 0.005, (16,), (), "euler-bernoulli", STEEL, regions=PARTS)
+BEAM = Spec(
+    "beam",
+    length=0.4,
+    width=0.03,
+    thickness=0.005,
+    elements=(16,),
+    clamped=(),
+    theory="euler-bernoulli",
+    material=STEEL,
+    regions=PARTS,
+)
 POINTS = np.linspace(0.0, 0.4, 9)[:, None]
 COUNT = 5
 
@@ -27,8 +37,9 @@ def measured_on(spec: Spec, points: np.ndarray = POINTS) -> Measured:
     nothing = np.full(COUNT, np.nan)
     size = 1e-3 * np.sqrt(np.mean(constants**2, axis=0)) * np.ones_like(constants)
     return Measured(
-        f, 1e-4 * f, nothing, nothing, POINTS, tuple(range(1, 10)), np.full(9, 8), np.arange(9), constants, size,
-        absolute=True, position_sigma=0.0,
+        frequency=f, frequency_sigma=1e-4 * f, damping=nothing, damping_sigma=nothing, points=POINTS,
+        nodes=tuple(range(1, 10)), seen=np.full(9, 8), hit=np.arange(9), constants=constants,
+        constants_sigma=size, absolute=True, position_sigma=0.0,
     )  # fmt: skip
 
 
@@ -38,7 +49,7 @@ def turned(**factors: float) -> Spec:
 
 
 def case_of(measured: Measured) -> Case:
-    return Case("bar", BEAM, measured, None, Tolerances({"E": 0.3, "density": 0.3}))
+    return Case("bar", BEAM, measured, baseline=None, tolerances=Tolerances({"E": 0.3, "density": 0.3}))
 
 
 @pytest.mark.parametrize("name", ["root", "middle", "tip"])
@@ -108,7 +119,11 @@ def test_modulus_and_density_come_apart_by_constants_as_far_as_the_calibration_g
     truth = measured_on(heavier(BEAM, 1.15, 0.8))
     names = ["E", "density"]
     case = Case(
-        "bar", plain, replace(truth, calibration=calibration), None, Tolerances({"E": 0.3, "density": 0.3})
+        "bar",
+        plain,
+        replace(truth, calibration=calibration),
+        baseline=None,
+        tolerances=Tolerances({"E": 0.3, "density": 0.3}),
     )
     alone = update(case, parameters=names, data=("frequencies", "shapes"))
     assert set(alone.undetermined) == set(names)
@@ -123,7 +138,13 @@ def test_modulus_and_density_come_apart_by_constants_as_far_as_the_calibration_g
 def test_an_error_of_the_calibration_goes_to_the_mass_in_full(error: float) -> None:
     truth = measured_on(heavier(BEAM, 1.0, 1.0))
     off = replace(truth, constants=(1 + error) * truth.constants, calibration=0.02)
-    case = Case("bar", replace(BEAM, regions=()), off, None, Tolerances({"E": 3.0, "density": 3.0}))
+    case = Case(
+        "bar",
+        replace(BEAM, regions=()),
+        off,
+        baseline=None,
+        tolerances=Tolerances({"E": 3.0, "density": 3.0}),
+    )
     result = update(case, parameters=["E", "density"], data=("frequencies", "constants"))
     assert [p.factor for p in result.parameters] == pytest.approx([1 / (1 + error)] * 2, rel=1e-3)
     pull = np.log(result.parameters[1].factor or np.nan) / (
@@ -144,7 +165,11 @@ def test_effects_are_found_by_shapes_and_constants(name: str, level: str) -> Non
     shift = 0.005 if name == "length" else 0.0  # a free beam grows at both ends
     truth = measured_on(replace(moved, regions=moved.regions if name == "root.E" else ()), POINTS + shift)
     case = Case(
-        "bar", replace(spec, regions=PARTS if name == "root.E" else ()), truth, None, Tolerances({"E": 0.3})
+        "bar",
+        replace(spec, regions=PARTS if name == "root.E" else ()),
+        truth,
+        baseline=None,
+        tolerances=Tolerances({"E": 0.3}),
     )
     names = (
         [name] if name != "root.E" else ["root.E", "length"]
@@ -157,7 +182,7 @@ def test_effects_are_found_by_shapes_and_constants(name: str, level: str) -> Non
 @pytest.mark.parametrize("name", ["E", "length", "sensor_mass"])
 def test_differences_of_constants_are_those_of_rebuilt_models(name: str) -> None:
     spec = replace(BEAM, regions=(), masses=(PointMass((0.4,), 0.0),))
-    case = Case("bar", spec, measured_on(spec), None, Tolerances({"E": 0.3}))
+    case = Case("bar", spec, measured_on(spec), baseline=None, tolerances=Tolerances({"E": 0.3}))
     names = list(dict.fromkeys([name, "length"]))
     specimen = build_specimen(case, names, lean=True)
     at = {"E": 1.1, "length": 0.0, "sensor_mass": 0.008}[name]
@@ -205,7 +230,7 @@ def test_mass_normalised_shapes_tell_modulus_from_density_as_constants_do(extra:
     plain = replace(BEAM, regions=(), masses=(PointMass((0.4,), 0.0),))
     doubts = Tolerances({"E": 0.3, "density": 0.3})
     result = update(
-        Case("bar", plain, truth, None, doubts),
+        Case("bar", plain, truth, baseline=None, tolerances=doubts),
         parameters=["E", "density", *extra],
         data=("frequencies", "constants"),
     )

@@ -10,16 +10,29 @@ from updating import Axes, Case, Material, Spec, Tolerances, build_structure, me
 from updating.update import Update, update
 
 STEEL = Material(210e9, 7850.0, 0.3)
-BEAM = Spec("beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", STEEL)
+BEAM = Spec(
+    "beam",
+    length=0.376,
+    width=0.0305,
+    thickness=0.0047625,
+    elements=(10,),
+    clamped=("x0",),
+    theory="euler-bernoulli",
+    material=STEEL,
+)
 MEASURED = np.array([24.47, 153.96, 429.15])
 NOMINAL = np.sqrt(build_structure(BEAM).eigen(3)[0]) / (2 * np.pi)
 RATIO = NOMINAL / MEASURED
 
 
 def case_of(measured: np.ndarray = MEASURED, sigma: np.ndarray | float = 0.001, **tolerances: float) -> Case:
-    data = ModalData(measured, sigma * measured)
+    data = ModalData(frequency=measured, frequency_sigma=sigma * measured)
     return Case(
-        "beam", BEAM, measured_from_modes(data, Axes(), BEAM, repeatability=0.0), None, Tolerances(tolerances)
+        "beam",
+        BEAM,
+        measured_from_modes(data, Axes(), BEAM, repeatability=0.0),
+        baseline=None,
+        tolerances=Tolerances(tolerances),
     )
 
 

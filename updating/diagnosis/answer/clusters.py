@@ -238,6 +238,3 @@ def _flips(problem: SpecimenProblem, explanation: Explanation) -> Iterator[Float
         chosen = [i for axis in axes for i in rows[axis]]
         flipped[chosen] = 1 - flipped[chosen]
         yield flipped
-
-
-__all__ = ["Cluster", "clusters", "sampled_places"]

@@ -132,6 +132,3 @@ def _band(values: FloatArray, bar: float) -> IntArray:
     while high < len(values) - 1 and values[high + 1] >= bar:
         high += 1
     return np.arange(low, high + 1)
-
-
-__all__ = ["Contributions", "columns_of", "contributions"]

@@ -153,5 +153,3 @@ class DecisionRules:
 
 DEFAULT_RULES = DecisionRules()
 """The rules of a diagnosis that states none."""
-
-__all__ = ["DEFAULT_RULES", "DecisionRules"]

@@ -62,6 +62,3 @@ def notes_on_doubtful(
             for i in np.flatnonzero(away > bar).tolist()
         ]
     return notes
-
-
-__all__ = ["notes_on_doubtful"]

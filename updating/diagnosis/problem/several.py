@@ -19,8 +19,8 @@ from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
-from updating.problem.gates import TheoryError
 from updating.problem.specimen import SpecimenProblem
+from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured
 
 Named = tuple[tuple[str, str], ...]

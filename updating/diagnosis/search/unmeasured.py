@@ -25,8 +25,8 @@ from updating.diagnosis.search.prior import log_prior
 from updating.diagnosis.search.search import examine
 from updating.effects import Effect
 from updating.problem.candidate import Candidate
-from updating.problem.gates import theory_error
 from updating.problem.specimen import SpecimenProblem
+from updating.problem.theory_error import theory_error
 from updating.thresholds import DOUBTED_FIT
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.models.state import Role, State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured

@@ -13,7 +13,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.models.state import NOMINAL, State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 

@@ -73,7 +73,9 @@ class Joint(Effect):
             Parameter(
                 "turning", "N m/rad", lowest_turn, highest_turn, held, log=True, like="nothing", or_none=True
             ),
-            Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
+            Parameter(
+                "damping", "N s/m", least, most, lossy, log=True, default=0.0, natural=("low",), or_none=True
+            ),
         )
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:

@@ -18,7 +18,7 @@ from updating.effects.structure.clamp import unit_edges
 from updating.effects.structure.joint import joint_springs, joints_of
 from updating.effects.structure.length import clamped_places
 from updating.models.state import NOMINAL, State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 
 LARGEST, SMALLEST = 0.2, 1e-4

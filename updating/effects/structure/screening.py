@@ -16,7 +16,7 @@ from updating.models.absorbers import structural
 from updating.models.fields import Sparse
 from updating.models.imported.matrices import Imported
 from updating.models.state import State
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 
 SOLVED = 40

@@ -97,7 +97,9 @@ class GroundSpring(Effect):
             *outline(predictor),
             Parameter("extent", "m", *extent, why, log=True, default=0.0, natural=EDGES, or_none=True),
             Parameter("stiffness", "N/m", low, high, held, log=True, or_none=True),
-            Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
+            Parameter(
+                "damping", "N s/m", least, most, lossy, log=True, default=0.0, natural=("low",), or_none=True
+            ),
         )
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:

@@ -82,7 +82,9 @@ class Suspension(Effect):
         lossy = "from hardly detectable to cords on which nothing bounces twice"
         sizes = (
             Parameter("stiffness", "N/m", low, high, held, log=True),
-            Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
+            Parameter(
+                "damping", "N s/m", least, most, lossy, log=True, default=0.0, natural=("low",), or_none=True
+            ),
         )
         if predictor.spec.kind == "matrices":
             return sizes
@@ -90,9 +92,25 @@ class Suspension(Effect):
         return (
             *sizes,
             Parameter(
-                "inset", "-", 0.0, FARTHEST_IN, "from the ends to beyond the first nodes", False, 0.1, EDGES
+                "inset",
+                "-",
+                0.0,
+                FARTHEST_IN,
+                "from the ends to beyond the first nodes",
+                log=False,
+                default=0.1,
+                natural=EDGES,
             ),
-            Parameter("cords", "-", 2.0, 4.0, "as a specimen is hung up by hand", False, usual, EDGES),
+            Parameter(
+                "cords",
+                "-",
+                2.0,
+                4.0,
+                "as a specimen is hung up by hand",
+                log=False,
+                default=usual,
+                natural=EDGES,
+            ),
         )
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:

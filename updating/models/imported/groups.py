@@ -189,7 +189,7 @@ def common_name(first: str, second: str) -> str:
     return begin or f"{first}/{second}"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Support:
     """Nodes that a support holds, and what the structure pulls at it when it moves as one body.
 
@@ -261,8 +261,17 @@ def supports_of(
             beside = np.isin(nodes, nodes[pulled])
             moved, heavy, inertia = _mirrored(places, mass, at, (group, centre), beside)
             name = _named(places, sets, group, number)
-            shares = _shares(near, parts[0], about), _shares(moved, parts[1], moved)
-            found.append(Support(name, centre, loads, (own + own.T) / 2, heavy, inertia, *shares))
+            support = Support(
+                name=name,
+                centre=centre,
+                loads=loads,
+                own=(own + own.T) / 2,
+                mass=heavy,
+                inertia=inertia,
+                held_by=_shares(near, parts[0], about),
+                carried_by=_shares(moved, parts[1], moved),
+            )
+            found.append(support)
     return tuple(found)
 
 

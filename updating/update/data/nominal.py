@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.prediction.matching import match
+from updating.prediction.assignment import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.reduced import Reduced
 from updating.models.structure import FieldStructure
-from updating.prediction.matching import mac_of_constants, match
+from updating.prediction.assignment import mac_of_constants, match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import level_of

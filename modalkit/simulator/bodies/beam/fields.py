@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -67,6 +67,7 @@ class BeamFields:
     thickness: float
     E: float
     density: float
+    _: KW_ONLY
     poisson: float = 0.3
     clamped: tuple[str, ...] = ("x0",)
     clamp_rotation: float = np.inf

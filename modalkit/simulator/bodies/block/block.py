@@ -28,7 +28,7 @@ ELEMENT = "C3D20R"
 """Kind of brick."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Block(Parted):
     """The body.
 

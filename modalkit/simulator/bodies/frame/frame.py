@@ -25,7 +25,7 @@ SHIFT, TURN = 3e3, 60.0
 STEEL = 7850.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Frame(Parted):
     """The ladder.
 

@@ -14,7 +14,8 @@ from updating.diagnosis.generic.columns import compared
 from updating.diagnosis.generic.field import Grid, beside
 from updating.diagnosis.search.evidence import explain
 from updating.likelihood.gaussian import marginal
-from updating.models.spec import Region, Spec
+from updating.models.parts import Region
+from updating.models.spec import Spec
 from updating.models.state import NOMINAL, State
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem

@@ -217,5 +217,3 @@ def parameter_matrices(model: DeckModel, name: str, value: float) -> tuple[Spars
 
 KNOWN = "SET.thickness, SET.thickness_1, SET.thickness_2, SET.stiffness, SET.mass, NODESET.x, NODESET.y, NODESET.z"
 """Numbers of a deck, for messages."""
-
-__all__ = ["DeckModel", "deck_matrices", "parameter_matrices", "read_deck_model"]
