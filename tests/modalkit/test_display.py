@@ -13,8 +13,8 @@ import pandas as pd
 import pytest
 from figure_cases import model_of
 from matplotlib.text import Text
+from report_pages import complete
 from test_localisation_figure import diagnosis_with
-from test_report import complete
 
 import acquisition
 import identification

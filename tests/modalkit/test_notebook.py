@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from figure_cases import model_of
 from glider import make_glider
+from report_pages import Reader, complete, data_of
 from test_localisation_figure import diagnosis_with
-from test_report import Reader, complete, data_of
 
 import modalkit
 from acquisition import InputError, ModalData

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 from conforming import departures
-from scipy.io import mmwrite
+from own_model_cases import MASSES, PARTS, PLATE, SPRINGS, K, M, bench, study
 from typer.testing import CliRunner
 
-from acquisition.errors import StudyError
 from modalkit.cli import app
 from modalkit.output.schemas.plan import CheckedForecast
 from modalkit.output.whole import plain
@@ -30,77 +29,6 @@ from modalkit.planning.trials import check
 from modalkit.study.read import read_study
 from updating.effects.base import Parameter
 from updating.models.imported.groups import Support
-
-MASSES, SPRINGS = 6, 6
-K, M = 1e6, 1.0
-PARTS = ("low", "middle", "high")
-
-STUDY = """
-title = "Chain"
-[test]
-band = [1.0, 290.0]
-{test}
-[model]
-type = "matrices"
-stiffness = "stiffness.mtx"
-mass = "mass.mtx"
-nodes = "nodes.csv"
-stiffness_parts = ["stiffness_low.mtx", "stiffness_middle.mtx", "stiffness_high.mtx"]
-mass_parts = ["mass_low.mtx", "mass_middle.mtx", "mass_high.mtx"]
-{model}
-[[model.region]]
-name = "low"
-[[model.region]]
-name = "middle"
-[[model.region]]
-name = "high"
-[tolerances]
-E = {E}
-density = {density}
-{more}
-"""
-POINTS = 'points = ["2+X", "4+X", "6+X"]\nsensor = "6+X"'
-
-
-def chain(folder: Path) -> None:
-    """Write six masses in a row between springs, the first held; two springs and two masses to a region."""
-    whole = np.zeros((2, MASSES, MASSES))
-    for i, part in enumerate(PARTS):
-        k, m = np.zeros((MASSES, MASSES)), np.zeros((MASSES, MASSES))
-        for n in (2 * i, 2 * i + 1):
-            k[n, n] += K
-            if n:
-                k[n - 1, n - 1] += K
-                k[n - 1, n] = k[n, n - 1] = -K
-            m[n, n] = M
-        whole += k, m
-        mmwrite(folder / f"stiffness_{part}.mtx", k, precision=17)
-        mmwrite(folder / f"mass_{part}.mtx", m, precision=17)
-    mmwrite(folder / "stiffness.mtx", whole[0], precision=17)
-    mmwrite(folder / "mass.mtx", whole[1], precision=17)
-    softer = whole[0].copy()
-    softer[2, 2] -= 0.5 * K
-    softer[1, 1] -= 0.5 * K
-    softer[1, 2] = softer[2, 1] = -0.5 * K
-    mmwrite(folder / "softer.mtx", softer, precision=17)
-    lines = [
-        f"{n + 1}, {0.1 * (n + 1):g}, 0, 0, 1, {n + 1}, {'end' if n == 5 else ''}" for n in range(MASSES)
-    ]
-    (folder / "nodes.csv").write_text("\n".join(["node, x, y, z, direction, row, sets", *lines]) + "\n")
-
-
-def study(folder: Path, **words: str) -> Path:
-    chain(folder)
-    known = {"test": POINTS, "model": "", "E": "0.01", "density": "0.003", "more": ""} | words
-    path = folder / "study.toml"
-    path.write_text(STUDY.format(**known))
-    return path
-
-
-def bench(folder: Path, **words: str) -> OwnBench:
-    found = bench_of(read_study(study(folder, **words)))
-    assert isinstance(found, OwnBench)
-    return found
 
 
 @pytest.fixture(scope="module")
@@ -325,22 +253,6 @@ def test_a_change_that_makes_the_test_worse_is_not_offered(chained: Forecast) ->
     assert note(replace(found, advice=(trade,)))[-1].endswith("separable severities become 1.2 times larger.")
 
 
-PLATE = """
-[test]
-{test}
-[model]
-type = "plate"
-length = 0.4
-width = 0.2
-thickness = 0.003
-elements = [8, 4]
-clamped = ["x0"]
-[model.material]
-E = 210e9
-density = 7850.0
-"""
-
-
 def test_a_plate_is_forecast_by_its_own_model(tmp_path: Path) -> None:
     path = tmp_path / "plate.toml"
     path.write_text(
@@ -356,62 +268,6 @@ def test_a_plate_is_forecast_by_its_own_model(tmp_path: Path) -> None:
     assert own.change(modulus, 0.1, 0.0)[: own.design.modes] == pytest.approx(0.05, abs=1e-9)
     path.write_text(PLATE.format(test=""))
     assert len(bench_of(read_study(path)).design.stations) == 20
-
-
-REFUSED = [
-    ({"test": ""}, "the points to be hit are not stated; give .test. points"),
-    ({"test": "points = [0.1, 0.2]"}, "0.1 is a place along a beam; write a node and its direction"),
-    ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is not one of the model's, which reach from 1 to 6"),
-    ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
-    ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
-    (
-        {"test": f'{POINTS}\nshape_sigma = "4 %"'},
-        "shape_sigma is of modes; a planned test takes none.*: leave it out",
-    ),
-    ({"test": 'points = ["here"]'}, "'here' is not a point; write a place along a beam"),
-    ({"test": "points = [[0.1]]"}, "is not a point; write a place along a beam"),
-]
-
-
-@pytest.mark.parametrize(("words", "message"), REFUSED)
-def test_what_cannot_be_planned_is_refused_in_one_line(
-    tmp_path: Path, words: dict[str, str], message: str
-) -> None:
-    with pytest.raises(StudyError, match=message) as error:
-        bench(tmp_path, **words)
-    assert "\n" not in str(error.value)
-
-
-def test_points_at_supports_are_refused(tmp_path: Path) -> None:
-    """Two nodes that supports hold: nothing moves where the test would hit."""
-    path = study(tmp_path, test='points = ["7+X", "8+X"]')
-    with (tmp_path / "nodes.csv").open("a") as table:
-        table.write("7, 0, 0, 0, 1, ,\n8, 0, 0.1, 0, 1, ,\n")
-    with pytest.raises(
-        StudyError, match="0 move any point; a forecast needs two: do the points lie at supports"
-    ):
-        bench_of(read_study(path))
-
-
-def test_a_band_without_modes_is_refused(tmp_path: Path) -> None:
-    path = study(tmp_path)
-    path.write_text(path.read_text().replace("band = [1.0, 290.0]", "band = [1.0, 50.0]"))
-    with pytest.raises(StudyError, match="holds 1 of the model's modes that the points show"):
-        bench_of(read_study(path))
-
-
-def test_a_place_on_a_plate_is_no_place_along_a_beam(tmp_path: Path) -> None:
-    path = tmp_path / "beam.toml"
-    text = PLATE.replace('type = "plate"', 'type = "beam"').replace("elements = [8, 4]", "")
-    path.write_text(text.format(test="points = [[0.2, 0.05]]"))
-    with pytest.raises(StudyError, match="is not a place along a beam"):
-        bench_of(read_study(path))
-    path.write_text(PLATE.format(test="points = [[0.2, 0.05]]\nsensor = 0.3"))
-    with pytest.raises(StudyError, match=r"\[test\] points and sensor: 0.3 is a place along a beam"):
-        bench_of(read_study(path))
-    path.write_text(PLATE.format(test='points = ["3+Z"]'))
-    with pytest.raises(StudyError, match="node 3: a plate has no node numbers; write"):
-        bench_of(read_study(path))
 
 
 @pytest.mark.long

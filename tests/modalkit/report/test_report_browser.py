@@ -17,8 +17,8 @@ from typing import Any
 import pytest
 from accessible import grave_findings
 from glider import make_glider
+from report_pages import complete
 from test_localisation_figure import diagnosis_with
-from test_report import complete
 
 from modalkit.report import Basis, diagnosis_report, identification_report, page
 from modalkit.study.read import read_study

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from test_report import Reader, data_of
+from report_pages import Reader, data_of
 
 from acquisition.quantities import decimals
 from modalkit.cli import main

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import docx
 import pytest
+from report_pages import NOON, Reader, complete, session_of
 from test_localisation_figure import diagnosis_with
-from test_report import NOON, Reader, complete, session_of
 
 from acquisition import InputError
 from modalkit.cli import main

@@ -1,6 +1,5 @@
 """One body of tests for every effect of the library."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +8,6 @@ from effect_cases import (
     CHANGES,
     CONTRACT,
     LOOK,
-    THIN,
     VANISHING,
     admits,
     admitted,
@@ -22,25 +20,40 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from updating_cases import BEAM, POINTS, blank
 
-from acquisition.errors import StudyError
 from modalkit.output.library import effects_document
-from updating import LIBRARY, Environment, Predictor
+from updating import LIBRARY, Predictor
 from updating.effects import accepted_state
-from updating.models import PointMass
 from updating.problem.candidate import Candidate
 
 RISES = {"E": 1, "density": -1, "thickness": 1, "length": -1, "clamp_rotation": 1, "sensor_mass": -1}
+
+
 RISES |= {"clamp_translation": 1, "lumped_mass": -1, "local_stiffness": -1, "axial_load": 1}
+
+
 RISES |= {"fluid_added_mass": -1, "exponential_window": 1, "calibration_gain": 0, "section_scale": 0}
 """Sign of the change of the first frequency with each effect's first size; 0 is none at all."""
+
+
 RISES |= {"ground_spring": 1, "local_mass": -1}
+
+
 SIZE = {"local_stiffness": "loss", "lumped_mass": "mass", "ground_spring": "stiffness"}
+
+
 SIZE |= {"local_mass": "factor"}
+
+
 HARMLESS = {"clamp_rotation": 1, "clamp_translation": 1, "sensor_mass": 0, "lumped_mass": 0}
 """Prior quantile at which nothing can be seen; a clamp is rigid at its high end."""
+
+
 HARMLESS |= {"local_stiffness": 0.5, "local_mass": 0.5, "exponential_window": 0}
 
+
 every = pytest.mark.parametrize("name", list(LIBRARY))
+
+
 places = pytest.mark.parametrize("place", list(LOOK))
 
 
@@ -329,21 +342,6 @@ def test_softer_and_stiffer_are_two_forms_each_uniform_in_log_compliance() -> No
         assert chosen.quantile("x", 0.3) == 0.3
 
 
-def test_a_fluid_that_is_told_is_not_searched_for() -> None:
-    stated = replace(LOOK["beam"], environment=Environment(998.0, free_surface=0.2, bottom=0.1))
-    parameter, wall = LIBRARY["fluid_added_mass"].parameters(stated)
-    assert wall.name == "wall"
-    assert parameter.low == pytest.approx(0.97 * 998)
-    assert parameter.high == pytest.approx(1.03 * 998)
-
-
-def test_a_mass_of_nothing_says_where_a_sensor_sits() -> None:
-    spec = replace(THIN, masses=(PointMass((0.376,), 0.0),))
-    predictor = Predictor(spec, blank(POINTS[:0], shapes_only=True))
-    assert LIBRARY["sensor_mass"].obstacle(predictor) is None
-    assert LIBRARY["sensor_mass"].locations(predictor, {"mass": 0.01}) == ((0.376, 0.0, 0.0),)
-
-
 @pytest.mark.long
 def test_the_record_of_the_library_is_complete() -> None:
     record = effects_document()
@@ -363,54 +361,3 @@ def test_the_record_of_the_library_is_complete() -> None:
         assert keys <= set(entry)
         for parameter in entry["parameters"]:
             assert {"name", "unit", "low", "high", "log", "why"} <= set(parameter)
-
-
-@pytest.mark.parametrize("values", [{}, {"stifness": 4000.0}, {"stiffness": 4000.0, "loss": 0.1}])
-def test_an_accepted_effect_takes_its_own_parameters_only(values: dict[str, float]) -> None:
-    predictor = Predictor(BEAM, blank(POINTS))
-    with pytest.raises(StudyError, match="stiffness"):
-        accepted_state(predictor, "clamp_rotation", values)
-
-
-def test_an_accepted_effect_must_exist() -> None:
-    with pytest.raises(StudyError, match="moon_phase"):
-        accepted_state(Predictor(BEAM, blank(POINTS)), "moon_phase", {})
-
-
-@pytest.mark.parametrize(
-    ("name", "values", "says"),
-    [
-        ("lumped_mass", {"mass": 0.01, "x": 99.0}, "x = 99 m is off the structure"),
-        ("lumped_mass", {"mass": -0.01, "x": 0.1}, "mass = -0.01 kg must be positive"),
-        ("lumped_mass", {"mass": 1e300, "x": 0.1}, "million times beyond"),
-        ("sensor_mass", {"mass": 0.01, "bulk": -1.0}, "bulk = -1 must not be negative"),
-        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": 1.0}, "takes away all stiffness"),
-        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": -1e300}, "million times beyond"),
-        ("clamp_rotation", {"stiffness": -1.0}, "stiffness = -1 N m/rad must be positive"),
-        ("E", {"factor": 0.0}, "factor = 0 must be positive"),
-        ("length", {"extension": -0.376}, "leaves nothing of the structure"),
-    ],
-)
-def test_values_that_nothing_has_are_refused(name: str, values: dict[str, float], says: str) -> None:
-    with pytest.raises(StudyError, match=re.escape(says)):
-        accepted_state(LOOK["beam"], name, values)
-
-
-@pytest.mark.parametrize("place", ["beam", "plate"])
-@pytest.mark.parametrize("name", ["lumped_mass", "damping_patch"])
-def test_a_balance_shows_the_mass_that_an_effect_adds_to_a_body_moving_as_one(name: str, place: str) -> None:
-    free = LOOK[place].of(replace(LOOK[place].spec, clamped=()))
-    values = {
-        "x": 0.2,
-        "y": 0.1,
-        "extent": 0.1,
-        "mass": 0.1,
-        "bulk": 0.0,
-        "stiffness": 0.0,
-        "loss_factor": 0.1,
-    }
-    moving = free.reduced.sampled["w"]
-    unit = np.linalg.lstsq(moving, np.ones(len(moving)), rcond=None)[0]
-    added = sum(LIBRARY[name].state(free, values).mass)
-    assert LIBRARY[name].weight(free, values) == pytest.approx(unit @ added @ unit, rel=1e-6)
-    assert LIBRARY[name].weight(free, values) > 0

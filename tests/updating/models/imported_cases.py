@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from updating import Axes, Material, Measured, Spec
+from updating import Axes, Material, Measured, Spec, build_structure
 from updating.models import Damping, PointMass, Region
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
 from updating.models.imported.nodes import read_table
+from updating.models.reduced import Reduced
+from updating.models.reduction import reduce_structure
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 
@@ -153,3 +155,15 @@ def frame_matrices(frame: ModuleType, folder: Path, *, named: bool = True) -> Im
     path.write_text(model.table(sets if named else {}))
     stiffness = model.matrix("stiffness")
     return Imported(stiffness, model.matrix("mass"), read_table(path, stiffness.shape[0]))
+
+
+ROOTS = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.995540735])
+"""cos x cosh x = -1."""
+
+
+ANALYTIC = (ROOTS / LENGTH) ** 2 * np.sqrt(STIFF / LINE) / (2 * np.pi)
+
+
+def reduced(imported: Imported, **options: object) -> Reduced:
+    structure = build_structure(spec_of(imported, **options))  # type: ignore[arg-type]
+    return reduce_structure(structure, np.array([[LENGTH, 0, 0], [0.3 * LENGTH, 0, 0]]), None, modes=12)
