@@ -145,8 +145,10 @@ def _sizes(
     )
     place, gain = np.divide(power, 2 * by, out=np.zeros_like(by), where=by > 0)
     for _ in range(steps):
+        # expectation: what each loading and each constant by itself has in the errors, given the sizes so far
         spread = np.append(np.full(axes, place), gain)
         second, left = _expected(moved, loads, factor * white, spread[None, :] / hits[:, None])
+        # maximisation: their mean squares over all points; each mode's factor is drawn to that of all
         sizes = np.einsum("j,jq->q", weight * hits, second) / weight.sum()
         ratio = np.einsum("j,jr->r", weight, left / white)
         new = (ratio + pooled * ratio.mean() / weight.sum()) / (weight.sum() + pooled)

@@ -197,7 +197,8 @@ class Fields:
         """Return a field by element: (n_elements, points of one, its degrees of freedom as `element_dofs` has them)."""
         table, matrix = self.element_dofs, self.sampled[name].tocoo()
         points = len(self.weights) // len(table)
-        cell = matrix.row // points
+        cell = matrix.row // points  # quadrature points are numbered element by element
+        # one rising key for each pair of element and degree of freedom: a single search finds all columns
         keys = (np.arange(len(table))[:, None] * self.n_dofs + table).ravel()
         column = (
             np.searchsorted(keys, cell.astype(np.int64) * self.n_dofs + matrix.col) - cell * table.shape[1]

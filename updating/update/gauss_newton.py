@@ -9,6 +9,12 @@ follow the model, a choice between two sensitivities of one step, singular value
 residuals' curvature, and a second-order correction behind a step; and it asks for residuals and sensitivities apart,
 where one evaluation of a model gives both. The diagnosis maximises a likelihood whose noise depends on the parameters,
 which is no sum of squares: see :mod:`updating.diagnosis.search.fit`.
+
+References
+----------
+Gauss-Newton steps by singular values, and steps that are halved: Nocedal and Wright, Numerical Optimization, 2nd ed.
+(2006), chapters 3 and 10. Parameters held at bounds that the step pushes against: Bertsekas, SIAM J. Control Optim. 20
+(1982) 221-246; here they are held by the sign of the step, not of the gradient, and let go at the next step.
 """
 
 from __future__ import annotations
@@ -64,7 +70,7 @@ def bounded_step(
     """
     free, increment = np.ones(len(theta), dtype=bool), np.zeros(len(theta))
     tiny = 1e-9 * (high - low)
-    for _ in range(len(theta)):
+    for _ in range(len(theta)):  # every round holds at least one parameter more
         increment = np.zeros(len(theta))
         increment[free] = step(free)
         out = free & (((theta <= low + tiny) & (increment < 0)) | ((theta >= high - tiny) & (increment > 0)))

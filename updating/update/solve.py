@@ -76,10 +76,10 @@ def solve(
     for _ in range(steps):
         increment = step(system, linear, theta, bend)
         found = _controlled(system, linear, theta, increment)
-        if found is None and bend.any():
+        if found is None and bend.any():  # the secant may mislead: once more with Gauss and Newton alone
             bend = np.zeros_like(bend)
             continue
-        if found is None:
+        if found is None:  # no step of any length lowers the misfit
             converged = True
             break
         moved, (theta, evaluations) = found[0] - theta, found

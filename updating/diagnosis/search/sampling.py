@@ -85,6 +85,7 @@ class Mixture:
                 continue
             mean = own @ samples / share
             away = samples - mean
+            # the covariance of as many samples as these are worth, and k + 1 of the width it had
             number = share**2 / float(np.sum(own**2))
             wide = (number * (away.T * own) @ away / share + (k + 1) * old) / (number + k + 1)
             shares.append(share)
@@ -165,6 +166,7 @@ def draw_posterior(
         new = mixture.draw(count, seed=1 + len(drawn))
         samples, height = np.concatenate([samples, new]), np.concatenate([height, log_likelihood(new)])
         drawn.append(mixture)
+        # samples of all rounds have the weights of one mixture of all proposals: a bad early one does no harm
         density = np.logaddexp.reduce(np.concatenate([one.log_parts(samples) for one in drawn]))
         log_weight = height - density - np.log(count)
         total = float(np.logaddexp.reduce(log_weight))
