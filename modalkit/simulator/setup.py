@@ -202,7 +202,7 @@ class Setup:
             return Block(kind=self.kind, **_drawn(self), breadth=self.breadth, height=self.height)
         if self.kind != "solid":
             return self.nominal
-        return Solid("beam", **_drawn(self))
+        return Solid(kind="beam", **_drawn(self))
 
     @cached_property
     def nominal_hz(self) -> tuple[float, ...]:

@@ -28,7 +28,7 @@ from modalkit.study.read import read_study
 
 needs_ccx = pytest.mark.skipif(not available(), reason="no ccx: apt-get install calculix-ccx")
 
-BAR = Solid("beam", 0.0, 0.5, 0.03, 0.008, 210e9, 7850.0, poisson=0.0)
+BAR = Solid(0.0, 0.5, 0.03, 0.008, 210e9, 7850.0, kind="beam", poisson=0.0)
 BEAM = Beam(0.0, 0.5, 0.03, 0.008, 210e9, 7850.0, poisson=0.0)
 
 
@@ -97,7 +97,7 @@ def test_free_bar_on_springs() -> None:
 @needs_ccx
 def test_solid_plate_is_the_thick_plate() -> None:
     corner = (PlateAttached(0.376, 0.2, mass=0.02, inertia=0.02 * 0.0016**2),)
-    solid = Solid("plate", 0.0, 0.376, 0.2, 0.003175, 210e9, 7850.0, attached=corner)
+    solid = Solid(0.0, 0.376, 0.2, 0.003175, 210e9, 7850.0, kind="plate", attached=corner)
     plate = Plate(0.0, 0.376, 0.2, 0.003175, 210e9, 7850.0, attached=corner)
     places = np.array([[0.1, 0.02], [0.2, 0.13], [0.376, 0.0]])
     ours, theirs = (

@@ -8,20 +8,15 @@ from types import MappingProxyType
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.base import Parameter, Values
 from updating.effects.box import (
-    Place,
-    extent_parameters,
     extents,
-    outline,
-    place,
     spread,
     starting_places,
-    where_alike,
 )
 from updating.effects.mechanism import ADDED_MASS, Size
-from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import heavy_regions, region_centre, regions_meant
+from updating.effects.regions import heavy_regions, regions_meant
+from updating.effects.structure.either_way import EitherWay
 from updating.models.state import State
 from updating.models.structure import regions_at
 from updating.models.terms import modelled_mass
@@ -35,12 +30,6 @@ LEAST = 1e-3
 """Smallest mass added or missing over the structure's own [-]: what repeated tests can see, as of a body. Doubled, a
 coating of a thousandth is found by no search."""
 
-EXTENTS = (0.05, 0.4)
-"""Extents relative to the side: what is shorter moves as a body does; a third with some room [-]."""
-
-HEAVIER, LIGHTER = (0.5, 1.0), (0.0, 0.5)
-"""The two forms, each half of the quantiles of the factor, nothing in the middle."""
-
 LARGE = 0.65
 """Quantile, within a form, of the size from which a search starts where frequencies do not decide [-]."""
 
@@ -48,12 +37,8 @@ SCREENED = (0.05, 0.4, 0.75)
 """Quantiles of the extents at which places are screened [-]. What is long is found from what is short, what is short
 hardly from what is long: the first stands at all of them."""
 
-SHARE_HEAVIER = 0.8
-"""Prior of the heavier form [-]: what is stuck on and not modelled is far commoner than what is missing and took no
-stiffness with it. Judged; the lighter one's share doubled, it gains ln 2."""
 
-
-class LocalMass(Effect):
+class LocalMass(EitherWay):
     """Another mass per area, as stiff as before, on a stretch of a beam, a rectangle of a plate, a region of matrices.
 
     ``factor`` is that of the mass per area, which moves across the structure and has no rotary inertia of its sections.
@@ -65,62 +50,48 @@ class LocalMass(Effect):
     summary = (
         "One place is heavier (coating, ice, filling, cladding) or lighter than modelled, as stiff as before."
     )
-    keeps_clamps = True
     footprint = "Frequencies fall, or rise, in the modes that move there; those with a node there hardly do."
     phrase = "a place of another mass"
-    models = ("beam", "plate", "matrices")
     equivalent_to = ("lumped_mass", "density", "damping_patch")
-    named = ("region",)
     screened = MappingProxyType({"extent": SCREENED})
-    repeats = True
     separated_by = "look for what sticks there and weigh it, or the part; or more points on it"
     fidelity = 0.03
 
-    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return place, extents and factor; of imported matrices the factor of a region."""
-        spec = predictor.spec
+    among = (0.05, 0.4)  # a third of the side with some room
+    why = "what is longer goes to the whole structure, what is shorter moves as a body does"
+    lacking = "the matrices have no mass_parts: nothing can be heavier at a place; give one per region"
+    upper = 0.8
+    """What is stuck on and not modelled is far commoner than what is missing and took no stiffness with it. Judged; the
+    lighter one's share doubled, it gains ln 2."""
+
+    def changed(self, predictor: Predictor) -> Parameter:
+        """Return the factor on the mass."""
         why = "from a part that is hollow to one that carries three times its own mass"
-        if spec.kind == "matrices":
-            return (Parameter("factor", "-", *FACTORS, why, log=True),)
-        why += "; uniform in the logarithm of the mass on either side"
-        factor = Parameter("factor", "-", *FACTORS, why, log=True)
-        why = "what is longer goes to the whole structure, what is shorter moves as a body does"
-        return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why, natural=("low",)), factor)
+        if self.two_sided(predictor):
+            why += "; uniform in the logarithm of the mass on either side"
+        return Parameter("factor", "-", *FACTORS, why, log=True)
 
-    def obstacle(self, predictor: Predictor) -> Obstacle | None:
-        """Need regions with masses of their own where there are matrices."""
-        if predictor.spec.kind != "matrices" or len(heavy_regions(predictor)) > 1:
-            return None
-        what = "the matrices have no mass_parts: nothing can be heavier at a place; give one per region"
-        return Obstacle(Lack.MODEL, what)
+    def regions(self, predictor: Predictor) -> Sequence[str]:
+        """Return those with masses of their own."""
+        return heavy_regions(predictor)
 
-    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return heavier and lighter; of imported matrices each region."""
-        if predictor.spec.kind == "matrices":
-            names = heavy_regions(predictor)
-            return tuple(Variant({"region": name}, 1 / len(names)) for name in names)
-        halves = ((SHARE_HEAVIER, HEAVIER), (1 - SHARE_HEAVIER, LIGHTER))
-        return tuple(Variant(weight=share, within={"factor": half}) for share, half in halves)
+    def two_sided(self, predictor: Predictor) -> bool:
+        """Return whether it is a place: the factor of a region is one form."""
+        return predictor.spec.kind != "matrices"
 
-    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
-        """Take prior quantiles to values: the last one is that of the mass added, which the data determine."""
-        values = super().values(predictor, coordinates)
-        if predictor.spec.kind != "matrices":
-            u = coordinates[-1]
-            low, high = _changes(predictor, values, heavier=u >= 0.5)
-            size = float(low * (high / low) ** abs(2 * u - 1))
-            values["factor"] = 1 + size if u >= 0.5 else 1 - size
-        return values
+    def size(self, value: float) -> float:
+        """Return the mass added over the place's own [-]."""
+        return value - 1
 
-    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
-        """Take values to prior quantiles; of the factor that of its mass."""
-        found = super().quantiles(predictor, values)
-        if "factor" in values and "extent" in values:
-            heavier, size = values["factor"] >= 1, abs(values["factor"] - 1)
-            low, high = _changes(predictor, values, heavier=heavier)
-            half = float(np.clip(np.log(max(size, low) / low) / np.log(high / low), 0.0, 1.0)) / 2
-            found[-1] = 0.5 + half if heavier else 0.5 - half
-        return found
+    def value(self, size: float) -> float:
+        """Return the factor with which so much is added."""
+        return 1 + size
+
+    def size_range(self, predictor: Predictor, values: Values, *, upper: bool) -> tuple[float, float]:
+        """Return the range of the size of the change of mass, relative to the place's own [-]."""
+        spec, (along, across) = predictor.spec, extents(values)
+        share = along / spec.length * (across / spec.width if spec.kind == "plate" else 1.0)
+        return LEAST / share, FACTORS[1] - 1 if upper else 1 - FACTORS[0]
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of short places either way.
@@ -164,25 +135,11 @@ class LocalMass(Effect):
         """Return the mass over what is modelled there."""
         return (Size(ADDED_MASS, self.weight(predictor, values), "kg"),)
 
-    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the middle; where no shapes separate it from its mirror images, these too."""
-        if predictor.spec.kind == "matrices":
-            return (region_centre(predictor, values),)
-        at = place(values)
-        return where_alike(predictor, at)
-
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the mass added, which data determine better than the factor; negative of a lighter place."""
         if predictor.spec.kind == "matrices":
             return {}
         return {"mass": (self.weight(predictor, values), "kg")}
-
-
-def _changes(predictor: Predictor, values: Values, *, heavier: bool) -> tuple[float, float]:
-    """Return the range of the size of the change of mass, relative to the place's own [-]."""
-    spec, (along, across) = predictor.spec, extents(values)
-    share = along / spec.length * (across / spec.width if spec.kind == "plate" else 1.0)
-    return LEAST / share, FACTORS[1] - 1 if heavier else 1 - FACTORS[0]
 
 
 def _modelled(predictor: Predictor, values: Values) -> tuple[FloatArray, FloatArray]:

@@ -8,21 +8,16 @@ from types import MappingProxyType
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
+from updating.effects.base import EDGES, Parameter, Values
 from updating.effects.box import (
     SOFT,
-    Place,
-    extent_parameters,
     extents,
-    outline,
-    place,
     shares,
     starting_places,
-    where_alike,
 )
 from updating.effects.mechanism import INTEGRAL_COMPLIANCE, Size
-from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import region_centre, regions_meant, stiff_regions
+from updating.effects.regions import regions_meant, stiff_regions
+from updating.effects.structure.either_way import EitherWay
 from updating.models.softening import softening
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -39,12 +34,6 @@ LOSSES = (-9.0, 0.98)
 RIGID = -LOSSES[0] / (1 - LOSSES[0])
 """Largest 1 - EI0/EI of a stiffer place, however little it still gives [-]."""
 
-EXTENTS = (0.02, 0.4)
-"""Extents relative to the side: what is shorter makes no other change than this; a third with some room [-]."""
-
-SOFTER, STIFFER = (0.5, 1.0), (0.0, 0.5)
-"""The two forms, each half of the quantiles of the loss, nothing in the middle."""
-
 SIZES = (0.3, 0.65)
 """Quantiles, within a form, of the sizes from which a search starts [-]."""
 
@@ -52,80 +41,53 @@ SHORT = 1 / 3
 """Quantile of the extents from which it starts, a twentieth of the side [-]: what is long is found from there, what is
 short hardly from what is long."""
 
-SHARE_SOFTER = 0.7
-"""Prior of the softer form [-]: what breaks or comes loose is commoner than what was added and not modelled. Judged;
-doubled for the stiffer one it gains ln 2."""
 
-
-class LocalStiffness(Effect):
+class LocalStiffness(EitherWay):
     """Bending stiffness lost or gained over a stretch of a beam, a rectangle of a plate, or a region of matrices."""
 
     name = "local_stiffness"
     channel = "stiffness"
     summary = "One place is softer (crack, notch, loose joint) or stiffer (rib, weld, repair) than modelled."
-    keeps_clamps = True
     footprint = (
         "Frequencies fall, or rise, in the modes that bend there; those with no curvature there hardly move."
     )
-    models = ("beam", "plate", "matrices")
     equivalent_to = ("clamp_rotation", "joint")
-    named = ("region",)
     screened = MappingProxyType({"extent": (SHORT, 0.75)})
-    repeats = True
     separated_by = "more points around the place, or a visual and dye check there"
     phrase = "a soft or stiff spot"
     fidelity = 0.05  # some 0.03 of a sharp-edged place seen as one with soft edges, 0.02 of the condensation
 
-    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return place, extents and loss; of imported matrices the region and its loss."""
-        spec = predictor.spec
+    among = (0.02, 0.4)  # a third of the side with some room
+    why = "what is longer is a region, not a place; what is shorter makes no other change than this"
+    lacking = (
+        "the matrices have no stiffness_parts: nothing can soften or stiffen at a place; give one per region"
+    )
+    upper = 0.7
+    """What breaks or comes loose is commoner than what was added and not modelled. Judged; doubled for the stiffer form
+    it gains ln 2."""
+
+    def changed(self, predictor: Predictor) -> Parameter:
+        """Return the share of the stiffness that is lost."""
         why = "from ten times as stiff, over nothing, to nearly severed; uniform in log compliance on either side"
-        lost = Parameter("loss", "-", *LOSSES, why, natural=EDGES)
-        if spec.kind == "matrices":
-            return (lost,)
-        why = "what is longer is a region, not a place; what is shorter makes no other change than this"
-        return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why, natural=("low",)), lost)
+        return Parameter("loss", "-", *LOSSES, why, natural=EDGES)
 
-    def obstacle(self, predictor: Predictor) -> Obstacle | None:
-        """Need regions where there are matrices."""
-        if predictor.spec.kind != "matrices" or len(stiff_regions(predictor)) > 1:
-            return None
-        what = "the matrices have no stiffness_parts: nothing can soften or stiffen at a place; give one per region"
-        return Obstacle(Lack.MODEL, what)
+    def regions(self, predictor: Predictor) -> Sequence[str]:
+        """Return those with stiffnesses of their own."""
+        return stiff_regions(predictor)
 
-    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return softer and stiffer, of imported matrices for each region."""
-        regional = predictor.spec.kind == "matrices"
-        known = [{"region": name} for name in stiff_regions(predictor)] if regional else [{}]
-        halves = ((SHARE_SOFTER, SOFTER), (1 - SHARE_SOFTER, STIFFER))
-        return tuple(
-            Variant(own, share / len(known), {"loss": half}) for share, half in halves for own in known
-        )
+    def size(self, value: float) -> float:
+        """Return EI0/EI - 1 [-]."""
+        return value / (1 - value)
 
-    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
-        """Take prior quantiles to values: the last one is that of the compliance, which the data determine."""
-        values = super().values(predictor, coordinates)
-        u = coordinates[-1]
-        low, high = self._compliances(predictor, values, softer=u >= 0.5)
-        size = float(low * (high / low) ** abs(2 * u - 1))
-        values["loss"] = size / (1 + size) if u >= 0.5 else -size / (1 - size)
-        return values
+    def value(self, size: float) -> float:
+        """Return the loss of such a compliance, of a stiffer place of such a share of it that is left."""
+        return size / (1 + size)
 
-    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
-        """Take values to prior quantiles; of the loss that of its compliance."""
-        found = super().quantiles(predictor, values)
-        if "loss" in values and ("extent" in values or predictor.spec.kind == "matrices"):
-            softer, size = values["loss"] >= 0, abs(values["loss"] / (1 - values["loss"]))
-            low, high = self._compliances(predictor, values, softer=softer)
-            half = float(np.clip(np.log(max(size, low) / low) / np.log(high / low), 0.0, 1.0)) / 2
-            found[-1] = 0.5 + half if softer else 0.5 - half
-        return found
-
-    def _compliances(self, predictor: Predictor, values: Values, *, softer: bool) -> tuple[float, float]:
+    def size_range(self, predictor: Predictor, values: Values, *, upper: bool) -> tuple[float, float]:
         """Return the range of the size of EI0/EI - 1 [-]."""
         whole = 1.0 if predictor.spec.kind == "matrices" else predictor.spec.length / values["extent"]
         low, high = REGIONAL if predictor.spec.kind == "matrices" else COMPLIANCE
-        return low * whole, high * whole if softer else RIGID
+        return low * whole, high * whole if upper else RIGID
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of places, with two losses and two gains at each."""
@@ -157,13 +119,6 @@ class LocalStiffness(Effect):
     def _softening(self, predictor: Predictor, values: Values) -> FloatArray:
         """Return the share of the stiffness lost at every quadrature point [-]: a box with soft edges."""
         return np.asarray(values["loss"] * shares(predictor, values, soft=SOFT))
-
-    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the place; where no shapes separate it from its mirror images, these too."""
-        if predictor.spec.kind == "matrices":
-            return (region_centre(predictor, values),)
-        at = place(values)
-        return where_alike(predictor, at)
 
     def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
         """Return the compliance, of a region of matrices over its own."""

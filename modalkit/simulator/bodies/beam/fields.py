@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from modalkit.simulator.bodies.box import Surrounded
 from modalkit.simulator.bodies.element import GAUSS, element_nodes, gauss_places, gauss_rows, readers
 from modalkit.simulator.bodies.mesh import graded_mesh
 from modalkit.simulator.bodies.parts import Absorber, Attached, Notch, Stretch
@@ -16,81 +17,24 @@ STIFF = 1e5
 """By how much shear stiffness grows and rotary inertia falls where they are left out [-]."""
 
 
-@dataclass(frozen=True)
-class BeamFields:
+@dataclass(frozen=True, kw_only=True)
+class BeamFields(Surrounded):
     """A beam of rectangular section, as far as it can be described without solving anything.
 
     Parameters
     ----------
-    start, end : float
-        Positions of its ends in the model's axes [m].
-    width, thickness : float
-        Section [m].
-    E, density : float
-        Young's modulus [Pa] and density [kg/m3].
-    poisson : float
-        Poisson's ratio [-].
-    clamped : tuple of str
-        Which ends are held: of ``x0``, ``x1``.
-    clamp_rotation, clamp_translation : float
-        Stiffness of each clamp [N m/rad], [N/m].
-    taper : float
-        Relative change of thickness from start to end, about the middle [-].
-    density_slope : float
-        Relative change of density from start to end, about the middle [-].
-    axial, axial_lean : float
-        Tension, its mean along the beam [N]; its relative excess at the end and lack at the start, below one [-].
-    rise : float
-        Of a shallow arch (1 - cos(2 pi x / L)) / 2 between ends that do not part [m].
-    fluid_density : float
-        Density of the fluid all around [kg/m3].
-    free_surface, bottom : float
-        Distances of the fluid's surface above and of its bottom below the faces [m].
-    drag : float
-        Density times viscosity of the fluid whose boundary layer damps [kg2/(m4 s)].
-    shear : bool
-        False leaves out shear and rotary inertia: only for telling what they do.
     notches, stretches, attached, absorbers : tuples
         Local losses of stiffness; changed sections; masses, springs and dashpots; masses that hang.
-    alpha, beta : float
-        Rayleigh damping that the modeller expects [1/s], [s].
-    added_alpha, added_beta, added_loss : float
-        Damping beside it: proportional to all mass, to the material's stiffness, and structural
-        [1/s], [s], [-].
     elements : int
         Elements before refinement [-].
+    **more
+        As of :class:`Surrounded`.
     """
 
-    start: float
-    end: float
-    width: float
-    thickness: float
-    E: float
-    density: float
-    _: KW_ONLY
-    poisson: float = 0.3
-    clamped: tuple[str, ...] = ("x0",)
-    clamp_rotation: float = np.inf
-    clamp_translation: float = np.inf
-    taper: float = 0.0
-    density_slope: float = 0.0
-    axial: float = 0.0
-    axial_lean: float = 0.0
-    rise: float = 0.0
-    fluid_density: float = 0.0
-    free_surface: float = np.inf
-    bottom: float = np.inf
-    drag: float = 0.0
-    shear: bool = True
     notches: tuple[Notch, ...] = ()
     stretches: tuple[Stretch, ...] = ()
     attached: tuple[Attached, ...] = ()
     absorbers: tuple[Absorber, ...] = ()
-    alpha: float = 0.0
-    beta: float = 0.0
-    added_alpha: float = 0.0
-    added_beta: float = 0.0
-    added_loss: float = 0.0
     elements: int = 14
 
     @property
@@ -102,16 +46,6 @@ class BeamFields:
     def rigid_modes(self) -> int:
         """Two of a free beam, none of a clamped one [-]."""
         return 0 if self.clamped else 2
-
-    @property
-    def length(self) -> float:
-        """Free length [m]."""
-        return self.end - self.start
-
-    @property
-    def mass(self) -> float:
-        """Mass of the beam alone [kg]."""
-        return self.density * self.width * self.thickness * self.length
 
     @property
     def bending_stiffness(self) -> float:
@@ -144,10 +78,6 @@ class BeamFields:
     def thickness_at(self, x: FloatArray) -> FloatArray:
         """Return the thickness at places, shape as ``x`` [m]."""
         return self.thickness * (1.0 + self.taper * self.middled(x))
-
-    def middled(self, x: FloatArray) -> FloatArray:
-        """Return places as shares of the length from the middle, -1/2 to 1/2 [-]."""
-        return (x - self.start) / self.length - 0.5
 
     @cached_property
     def gauss(self) -> tuple[FloatArray, dict[str, FloatArray]]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from modalkit.simulator.bodies.box import Surrounded
 from modalkit.simulator.bodies.plate.grid import Grid
 from modalkit.simulator.bodies.plate.matrices import Section
 from modalkit.simulator.bodies.plate.mesh import plate_lines
@@ -26,25 +27,14 @@ _LAYER = 1.5
 _ELEMENTS = 30
 
 
-@dataclass(frozen=True)
-class PlateFields:
+@dataclass(frozen=True, kw_only=True)
+class PlateFields(Surrounded):
     """A rectangular plate, as far as it can be described without solving anything.
 
     Parameters
     ----------
-    start, end : float
-        Its edges x0 and x1 in the model's axes [m].
-    width, thickness : float
-        Extent along y, and thickness [m].
-    E, density, poisson : float
-        Young's modulus along x [Pa], density [kg/m3], Poisson's ratio [-].
-    clamped : tuple of {"x0", "x1", "y0", "y1"}
-        Edges that are held; none is a free plate.
     side : float
         The edge y0 [m].
-    clamp_rotation, clamp_translation : float
-        Stiffness of the held edges per metre, [N m/rad/m] and [N/m/m]; the edge that shifts goes on holding the
-        slope.
     clamp_from, clamp_to : float
         From where to where along each held edge it gives way, in the model's axes; the rest of the edge holds [m].
     skew : float
@@ -53,73 +43,34 @@ class PlateFields:
         E across over E along; coupling, twist and shear follow the geometric mean [-].
     shear_ratio : float
         Shear modulus in the plane, which twist follows, over that of the geometric mean [-].
-    taper : float
-        Relative change of thickness from x0 to x1, about the middle [-].
-    density_slope : float
-        Relative change of density from x0 to x1, about the middle [-].
-    axial, axial_across : float
-        Whole tension along x and along y [N].
-    axial_lean, axial_bow : float
-        How the first is spread: relative excess at x1 and lack at x0; relative excess in the middle of the width
-        over the mean, which the edges lack twice [-].
-    rise : float
-        Of a shallow arch (1 - cos(2 pi x / L)) / 2 along x, between edges that do not part [m].
-    fluid_density : float
-        Density of a fluid on both faces [kg/m3].
-    free_surface, bottom : float
-        Distances of the fluid's surface above and of its bottom below the faces [m].
-    drag : float
-        Density times viscosity of the fluid whose boundary layer damps [kg2/(m4 s)].
+    axial_across : float
+        Tension along y [N].
+    axial_bow : float
+        Relative excess of the tension along x in the middle of the width over the mean, which the edges lack twice [-].
     wall : bool
         Whether the only held edge x0 stands at an endless wall, through which no fluid flows.
-    shear : bool
-        False makes shear a hundred times stiffer and leaves out rotary inertia: for telling what they do.
     shear_factor : float
         Kappa (Reissner) [-].
     spots, patches, ribs, attached, absorbers : tuples
         Local losses of stiffness; layers; ribs; masses, springs and dashpots; masses that hang.
     cavity : Cavity, optional
         Air shut in behind it.
-    alpha, beta : float
-        Rayleigh damping that the modeller expects [1/s], [s].
-    added_alpha, added_beta, added_loss : float
-        Damping beside it: proportional to all mass, to the material's stiffness, and structural
-        [1/s], [s], [-].
     elements : (along, across), optional
         Elements before refinement, without the narrow ones along the edges; default some thirty, nearly square
         [-].
+    **more
+        As of :class:`Surrounded`.
     """
 
-    start: float
-    end: float
-    width: float
-    thickness: float
-    E: float
-    density: float
-    _: KW_ONLY
-    poisson: float = 0.3
-    clamped: tuple[str, ...] = ("x0",)
     side: float = 0.0
-    clamp_rotation: float = np.inf
-    clamp_translation: float = np.inf
     clamp_from: float = -np.inf
     clamp_to: float = np.inf
     skew: float = 0.0
     ratio: float = 1.0
     shear_ratio: float = 1.0
-    taper: float = 0.0
-    density_slope: float = 0.0
-    axial: float = 0.0
     axial_across: float = 0.0
-    axial_lean: float = 0.0
     axial_bow: float = 0.0
-    rise: float = 0.0
-    fluid_density: float = 0.0
-    free_surface: float = np.inf
-    bottom: float = np.inf
-    drag: float = 0.0
     wall: bool = True
-    shear: bool = True
     shear_factor: float = 5.0 / 6.0
     spots: tuple[SoftSpot, ...] = ()
     patches: tuple[Patch, ...] = ()
@@ -127,22 +78,7 @@ class PlateFields:
     attached: tuple[PlateAttached, ...] = ()
     absorbers: tuple[PlateAbsorber, ...] = ()
     cavity: Cavity | None = None
-    alpha: float = 0.0
-    beta: float = 0.0
-    added_alpha: float = 0.0
-    added_beta: float = 0.0
-    added_loss: float = 0.0
     elements: tuple[int, int] | None = None
-
-    @property
-    def length(self) -> float:
-        """Length in the middle [m]."""
-        return self.end - self.start
-
-    @property
-    def mass(self) -> float:
-        """Mass of the plate alone [kg]."""
-        return self.density * self.width * self.thickness * self.length
 
     @property
     def bending_stiffness(self) -> float:
@@ -200,10 +136,6 @@ class PlateFields:
         grid_x, y, _, _ = self.grid.gauss
         thick = self.thickness * (1.0 + self.taper * self.middled(grid_x))
         return self.grid.place(grid_x, y), y, thick
-
-    def middled(self, x: FloatArray) -> FloatArray:
-        """Return places as shares of the length from the middle, -1/2 to 1/2 [-]."""
-        return (x - self.start) / self.length - 0.5
 
     @property
     def load(self) -> FloatArray:

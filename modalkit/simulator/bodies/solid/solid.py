@@ -1,11 +1,9 @@
 """A beam or a plate of solid bricks, solved by CalculiX: a reference independent of beam and plate theory.
 
-It offers what ``Beam`` and ``Plate`` do for dry bodies (``body.Body``): ``start``, ``end``, ``width``, ``side``,
-``thickness``, ``E``, ``density``, ``poisson``, ``clamped``, ``clamp_rotation``, ``attached``, ``alpha``, ``beta``,
-``added_alpha``, ``added_beta``, ``added_loss``, and ``cuts``: slots of real width and depth in its upper face.
-``kind`` states whether places are (n, 1) on a beam's centre line or (n, 2) on a plate. A beam is half of one, held in
-its plane of symmetry, so that it neither twists nor sways. Modes that move in the plane are left out. Needs ``ccx``
-on the path (``available()``).
+It offers what ``Beam`` and ``Plate`` do for dry bodies (``body.Body``), and ``cuts``: slots of real width and depth
+in its upper face. ``kind`` states whether places are (n, 1) on a beam's centre line or (n, 2) on a plate. A beam is
+half of one, held in its plane of symmetry, so that it neither twists nor sways. Modes that move in the plane are left
+out. Needs ``ccx`` on the path (``available()``).
 """
 
 from __future__ import annotations
@@ -19,6 +17,7 @@ import scipy.interpolate
 from acquisition.arrays import FloatArray, frozen_array
 from acquisition.errors import StudyError
 from modalkit.simulator.bodies.body import Loss
+from modalkit.simulator.bodies.box import Box
 from modalkit.simulator.bodies.parts import Attached
 from modalkit.simulator.bodies.plate.mesh import plate_lines
 from modalkit.simulator.bodies.plate.parts import PlateAttached
@@ -47,63 +46,31 @@ class Cut:
     across: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True)
-class Solid:
+@dataclass(frozen=True, kw_only=True)
+class Solid(Box):
     """A box of C3D20R bricks.
 
     Parameters
     ----------
     kind : {"beam", "plate"}
         How it is read.
-    start, end, width, thickness : float
-        As a plate's [m].
-    E, density, poisson : float
-        Material [Pa], [kg/m3], [-].
-    clamped : tuple of {"x0", "x1"}
-        Faces that are held. A free one has to hang on springs.
     side : float
         The edge y0 [m].
-    clamp_rotation : float
-        Of each held face: of a beam [N m/rad], of a plate per metre [N].
     cuts : tuple of Cut
         Slots; all of the same depth.
     attached : tuple of Attached or PlateAttached
         What is fixed; its inertia is that of a mass on the upper face.
-    alpha, beta, added_alpha, added_beta, added_loss : float
-        Damping, as a beam's.
     elements : (along, across, through), optional
         Bricks before refinement; across a beam, of its half [-].
+    **more
+        As of :class:`Box`; a free body has to hang on springs.
     """
 
     kind: str
-    start: float
-    end: float
-    width: float
-    thickness: float
-    E: float
-    density: float
-    poisson: float = 0.3
-    clamped: tuple[str, ...] = ("x0",)
     side: float = 0.0
-    clamp_rotation: float = np.inf
     cuts: tuple[Cut, ...] = ()
     attached: tuple[Attached | PlateAttached, ...] = ()
-    alpha: float = 0.0
-    beta: float = 0.0
-    added_alpha: float = 0.0
-    added_beta: float = 0.0
-    added_loss: float = 0.0
     elements: tuple[int, int, int] | None = None
-
-    @property
-    def length(self) -> float:
-        """Free length [m]."""
-        return self.end - self.start
-
-    @property
-    def mass(self) -> float:
-        """Mass of the box, uncut [kg]."""
-        return self.density * self.width * self.thickness * self.length
 
     @property
     def gradients(self) -> tuple[str, ...]:
