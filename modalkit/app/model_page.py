@@ -10,10 +10,12 @@ import numpy as np
 
 from acquisition import InputError
 from acquisition.errors import ModalkitError
+from acquisition.quantities import hertz
 from identification import ModalModel
 from modalkit.app.toml import toml_text
 from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
+from modalkit.views.charts.matrix import matrix_chart
 from modalkit.views.curves import lines
 from modalkit.views.pairs import pairs_in
 from modalkit.views.shapes import Beside
@@ -240,7 +242,13 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
     prediction = predictor.predict()
     page: dict[str, Any] = {"model_hz": prediction.frequency, "pairs": [], "mac": None, "frf": None}
     if measured.has_shapes:
-        page["mac"] = mac_of_constants(measured, prediction)
+        found = mac_of_constants(measured, prediction)
+        hz = [
+            [f"{i + 1}: {hertz(f)}" for i, f in enumerate(own)]
+            for own in (measured.frequency, prediction.frequency)
+        ]
+        title = "Measured modes with those of the model"
+        page["mac"] = matrix_chart("mac", title, "In hundredths.", found, *hz, axes=("test", "model")).data()
     try:
         paired = pair_modes(measured, prediction)
     except ModalkitError as error:

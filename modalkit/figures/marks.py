@@ -47,13 +47,23 @@ def _points(axes: Axes, series: Series, chart: Chart, order: float) -> None:
     x, y = _numbers(series.x), _numbers(series.y)
     if "error" in more:
         axes.errorbar(x, y, yerr=_numbers(more["error"]), fmt="none", ecolor=colour, capsize=3, zorder=order)
+    if "top" in more:
+        axes.vlines(
+            x,
+            _numbers(more["bottom"]),
+            _numbers(more["top"]),
+            color=colour,
+            linewidth=1.4,
+            alpha=0.45,
+            zorder=order,
+        )
     face: dict[str, Any] = {"color": colour, "linewidth": 1.0}
     symbol = MARKERS[more.get("symbol", "dot")]
     if more.get("hollow"):
         face = {"facecolor": "white", "edgecolor": colour, "linewidth": 1.5}
     elif symbol != "x":
         face = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.6 * (more.get("size", 4.0) >= 4)}
-    side = 2 * PIXEL * more.get("size", 4.0)
+    side = 2 * PIXEL * _numbers(more.get("sizes", [more.get("size", 4.0)]))
     axes.scatter(x, y, s=side**2, marker=symbol, label=_named(series), zorder=order, clip_on=False, **face)
 
 

@@ -68,9 +68,9 @@ class Series:
     colour : str
         One of the page: blue, orange, green, red, muted, faint, ink, pale, band.
     more : dict
-        What else the kind has: error, low, high, bottom, top, value, written, text, colours, modes (sequences; the
-        last are the numbers of modes that marks stand for); symbol, size, width, hollow, dash, right (behind, on an
-        axis of its own), panel (1 for the first below), unnamed.
+        What else the kind has: error, low, high, bottom, top (of points the ends of an interval), value, written,
+        text, colours, sizes, modes (sequences; the last are the numbers of modes that marks stand for); symbol, size,
+        width, hollow, dash, right (behind, on an axis of its own), panel (1 for the first below), unnamed.
     """
 
     name: str
@@ -93,7 +93,7 @@ class Series:
         return found | {k: rounded(v) if k in _NUMBERS else v for k, v in self.more.items() if v is not None}
 
 
-_NUMBERS = {"error", "low", "high", "bottom", "top", "value"}
+_NUMBERS = {"error", "low", "high", "bottom", "top", "value", "sizes"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from acquisition import InputError
-from identification import ModalModel, auto_mac, cmif, mpc, mvmif
+from acquisition import InputError, ModalData
+from identification import ModalModel, cmif, mpc, mvmif
 from identification.identify import Provisional
 from identification.pole_reasons import Origins
 from modalkit.study.read import Study
 from modalkit.views.charts.frf import frf_names
+from modalkit.views.charts.test import auto_mac_chart
 from modalkit.views.curves import check_frf, lines
 from modalkit.views.hits import first_frf, frf_page
 from modalkit.views.stability import MEANINGS, pole_stability
@@ -63,7 +64,7 @@ def modes_page(
         "identified": False,
         "scaled": modes.modal.scaled,
         "warnings": list(modes.warnings),
-        "auto_mac": None if modes.modal.shapes is None else auto_mac(modes.modal.shapes),
+        "mac": _auto_mac(modes.modal),
         "band": study.test.band,
     }
     if processed is None or isinstance(modes, Modes) or origins is None:
@@ -85,6 +86,12 @@ def modes_page(
         "chart": _chart(modes, origins),
         "sum": _sum(modes),
     }
+
+
+def _auto_mac(modal: ModalData) -> dict[str, Any] | None:
+    """Return how alike the modes are; None of one mode, and at one degree of freedom."""
+    chart = auto_mac_chart(modal, "mac") if len(modal) > 1 and len(modal.dofs) > 1 else None
+    return None if chart is None else chart.data()
 
 
 def _chart(model: ModalModel, origins: Origins) -> dict[str, Any]:

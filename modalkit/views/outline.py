@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating import Case, Diagnosis, Measured
-from updating.models.imported import Imported
+from updating import Case, Diagnosis
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -21,30 +20,23 @@ class Outline:
         Size along x and y; ``width`` is 0 for a beam [m].
     zones : list of (x0, x1, y0, y1, probability)
         Regions [m, m, m, m, -].
+    names : list of str
+        Theirs.
     points : (n, 2) array
         Test points [m].
     sensors : (n, 2) array
         Those that carry a transducer [m].
     clamped : tuple of str
         Clamped edges.
-    view : tuple of int
-        Axes of the model that are drawn to the right and upwards.
-    origin : tuple of float
-        Where the drawing's corner lies on them [m].
     """
 
     length: float
     width: float
     zones: list[tuple[float, float, float, float, float]]
+    names: list[str]
     points: FloatArray
     sensors: FloatArray
     clamped: tuple[str, ...]
-    view: tuple[int, int] = (0, 1)
-    origin: tuple[float, float] = (0.0, 0.0)
-
-    def flat(self, place: tuple[float, float, float]) -> tuple[float, float]:
-        """Return a place of the model as it is drawn [m]."""
-        return place[self.view[0]] - self.origin[0], place[self.view[1]] - self.origin[1]
 
     @property
     def even(self) -> bool:
@@ -54,13 +46,11 @@ class Outline:
 
 
 def outline(diagnosis: Diagnosis, case: Case | None) -> Outline:
-    """Gather what is known of the structure; without a case, what the zones' centres show."""
+    """Gather what is known of a beam or a plate; without a case, what the zones' centres show."""
     found = {zone.name: zone.probability for zone in diagnosis.where.zones}
     if case is None:
         return _from_centres(diagnosis)
     spec, test = case.spec, case.measured
-    if spec.imported is not None:
-        return _imported_outline(spec.imported, test)
     width = spec.width if spec.kind == "plate" else 0.0
     zones = [(*r.x, *(r.y or (0.0, width)), found.get(r.name, 0.0)) for r in spec.regions]
     points = np.zeros((len(test.points), 2))
@@ -69,28 +59,10 @@ def outline(diagnosis: Diagnosis, case: Case | None) -> Outline:
         length=spec.length,
         width=width,
         zones=zones,
+        names=[r.name for r in spec.regions],
         points=points,
         sensors=points[list(test.sensors)],
         clamped=spec.clamped,
-    )
-
-
-def _imported_outline(imported: Imported, test: Measured) -> Outline:
-    """Draw the box of imported nodes along its two longest sides; what the regions hold is not known as an outline."""
-    low, high = imported.extents
-    view = np.sort(np.argsort(high - low, kind="stable")[-2:])
-    size = np.maximum((high - low)[view], 1e-3 * (high - low).max())
-    points = (test.points - low)[:, view]
-    first, second = (int(axis) for axis in view)
-    return Outline(
-        length=float(size[0]),
-        width=float(size[1]),
-        zones=[(0.0, float(size[0]), 0.0, float(size[1]), 1.0)],
-        points=points,
-        sensors=points[list(test.sensors)],
-        clamped=(),
-        view=(first, second),
-        origin=(float(low[first]), float(low[second])),
     )
 
 
@@ -102,7 +74,13 @@ def _from_centres(diagnosis: Diagnosis) -> Outline:
     cells = [(*x[z.center[0]], *(y[0.0] if flat else y[z.center[1]]), z.probability) for z in zones]
     length, width = max((c[1] for c in cells), default=1.0), max((c[3] for c in cells), default=0.0)
     return Outline(
-        length=length, width=width, zones=cells, points=np.zeros((0, 2)), sensors=np.zeros((0, 2)), clamped=()
+        length=length,
+        width=width,
+        zones=cells,
+        names=[z.name for z in zones],
+        points=np.zeros((0, 2)),
+        sensors=np.zeros((0, 2)),
+        clamped=(),
     )
 
 

@@ -162,33 +162,5 @@ function without(object, key) {
   return rest;
 }
 
-/** Return an axis of numbered modes, written upright; where many stand close together, every second or third. */
-export function modesAxis(title, count, more = {}) {
-  const dtick = Math.ceil(count / (window.innerWidth < 600 ? 12 : 16)); // numbers of two digits that have room
-  return axis(title, { type: "category", tickangle: 0, tick0: 0, dtick, ...more });
-}
-
-/** Return the trace of a matrix of MACs. */
-export function macMatrix(matrix, rows, columns) {
-  return {
-    type: "heatmap",
-    z: matrix,
-    x: columns,
-    y: rows,
-    zmin: 0,
-    zmax: 1,
-    xgap: 1,
-    ygap: 1,
-    colorscale: [
-      [0, colour("panel")],
-      [1, colour("blue")],
-    ],
-    colorbar: { title: { text: "MAC" }, thickness: 10, outlinewidth: 0 },
-    texttemplate: columns.length <= (window.innerWidth < 600 ? 8 : 16) ? "%{z:.2f}" : "",
-    textfont: { size: 10 },
-    hovertemplate: "%{y} with %{x}: MAC %{z:.3f}<extra></extra>",
-  };
-}
-
 /** Plotly reads a few tags in its texts; a text from a file must not hold any. */
 export const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");

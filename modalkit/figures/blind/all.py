@@ -11,10 +11,14 @@ from modalkit.blind.scoring.calibration import CAME_TRUE
 from modalkit.blind.scoring.closing import comparable
 from modalkit.blind.scoring.rates import headline
 from modalkit.blind.scoring.score import Score
-from modalkit.figures.blind.confidence import abstention_figure, curve_of, reliability_figure
+from modalkit.figures.blind.confidence import abstention_figure, curve_of
 from modalkit.figures.blind.confusion import confusion_figure
-from modalkit.figures.blind.rates import rates_figure
-from modalkit.figures.blind.truth import closing_figure, severity_figure
+from modalkit.figures.blind.truth import severity_figure
+from modalkit.figures.chart import sheet_figure
+from modalkit.views.charts.blind import closing_sheet, rates_sheet, reliability_sheet
+
+SIDE = 4.6
+"""Height of a panel [in]."""
 
 
 def blind_figures(score: Score) -> dict[str, Figure]:
@@ -33,17 +37,20 @@ def blind_figures(score: Score) -> dict[str, Figure]:
     """
     stated = comparable(score.closing)
     drawn: dict[str, tuple[bool, Callable[[], Figure]]] = {
-        "blind_rates": (bool(headline(score.rates)), lambda: rates_figure(score)),
+        "blind_rates": (bool(headline(score.rates)), lambda: sheet_figure(rates_sheet(score), columns=1)),
         "blind_confusion": (True, lambda: confusion_figure(score.answers)),
         "blind_abstention": (len(curve_of(score, KNOWN).points) > 0, lambda: abstention_figure(score)),
-        "blind_reliability": (bool(score.rates.of(CAME_TRUE)), lambda: reliability_figure(score)),
+        "blind_reliability": (
+            bool(score.rates.of(CAME_TRUE)),
+            lambda: sheet_figure(reliability_sheet(score), tall=SIDE),
+        ),
         "blind_severity": (
             bool(score.severity["error"].notna().any()),
             lambda: severity_figure(score.severity),
         ),
         "blind_closing": (
             len(stated) > 0 or bool(score.places["held"].astype(bool).any()),
-            lambda: closing_figure(score.closing, score.places),
+            lambda: sheet_figure(closing_sheet(score.closing, score.places), tall=SIDE),
         ),
     }
     return {name: make() for name, (wanted, make) in drawn.items() if wanted}

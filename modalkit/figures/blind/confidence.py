@@ -1,8 +1,7 @@
-"""Whether the confidence of a diagnosis is justified: abstention, reliability, and effects outside its library."""
+"""Whether the confidence of a diagnosis is justified: what it answers against how often it is right."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +11,10 @@ from matplotlib.figure import Figure
 
 from acquisition import InputError
 from modalkit.blind.scoring.abstention import ANSWERED, BOTH, KNOWN, RIGHT, asked_of, curve
-from modalkit.blind.scoring.calibration import CAME_TRUE, ERROR, STATED
-from modalkit.blind.scoring.open_set import AREA, detection, roc_curve
 from modalkit.blind.scoring.score import Score
-from modalkit.blind.scoring.table import ALL, Rate
+from modalkit.blind.scoring.table import Rate
 from modalkit.figures.style import (
     BLUE,
-    FAINT,
-    INK,
     MARGIN,
     MUTED,
     ORANGE,
@@ -27,7 +22,6 @@ from modalkit.figures.style import (
     WIDTH,
     caption,
     caption_height,
-    head,
     key,
     new_figure,
     place,
@@ -162,79 +156,3 @@ def _curve(axes: Axes, drawn: Curve, colour: str, words: str, strength: float) -
         )
     shown = right[across > 5] if (across > 5).any() else right
     return float(min(shown.min(), 100 * rule.low if np.isfinite(rule.rate) else 100.0))
-
-
-def reliability_figure(score: Score) -> Figure:
-    """Draw how often a probability comes true, and how well the fit detects what is outside the library.
-
-    Parameters
-    ----------
-    score : Score
-        Of a blind run.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    InputError
-        If there are no probabilities.
-    """
-    bins = score.rates.of(CAME_TRUE)
-    if not bins:
-        raise InputError(
-            "the blind run has no probabilities to compare with the truth; hide effects of the library"
-        )
-    title = _calibrated(score.rates.of(ERROR))
-    note = (
-        "Left: effects of the library that the data show, and none. Right: the worse the best row fits, the more "
-        "unknown."
-    )
-    top = caption_height(title, note) + 0.45
-    figure = new_figure(top + SIDE + 0.7)
-    caption(figure, title, note)
-    _reliability(
-        place(figure, MARGIN + 0.75, top, SIDE, SIDE, name="reliability"), bins, score.rates.of(STATED)
-    )
-    roc = roc_curve(*detection(score.trials).T)
-    _roc(place(figure, WIDTH - MARGIN - SIDE - 0.1, top, SIDE, SIDE, name="roc"), roc, score.rates[AREA, ALL])
-    return figure
-
-
-def _calibrated(errors: Sequence[Rate]) -> str:
-    row = next((row for row in errors if row.total), None)
-    if row is None:
-        return "Probabilities against what came true"
-    value, low, high = (f"{100 * x:.1f}" for x in (row.rate, row.low, row.high))
-    return f"Probabilities are off by {value} points of % in the mean ({low} to {high})"
-
-
-def _reliability(axes: Axes, bins: Sequence[Rate], stated: Sequence[Rate]) -> None:
-    tidy(axes, x="probability stated for the first set [%]", y="came true [%]")
-    head(axes, "Reliability")
-    axes.plot([0, 100], [0, 100], color=FAINT, linewidth=1.2, zorder=1.5)
-    across = [100 * row.rate for row in stated]
-    rate, low, high = 100 * np.array([(row.rate, row.low, row.high) for row in bins]).T
-    axes.vlines(across, low, high, color=BLUE, linewidth=2.0, alpha=0.45, zorder=2)
-    total = np.array([row.total for row in bins])
-    size = 25 + 160 * np.sqrt(total / total.max())
-    axes.scatter(across, rate, s=size, color=BLUE, edgecolor="white", linewidth=1.0, zorder=3, clip_on=False)
-    axes.set_xlim(0, 101)
-    axes.set_ylim(0, 101)
-    axes.text(99, 3, "dots as large as their bins", fontsize=SMALL, color=MUTED, ha="right")
-
-
-def _roc(axes: Axes, roc: pd.DataFrame, area: Rate) -> None:
-    tidy(axes, x="known effects called unknown [%]", y="unknowable ones found [%]")
-    head(axes, "Unknown separated from known by the fit")
-    axes.plot([0, 100], [0, 100], color=FAINT, linewidth=1.2, zorder=1.5)
-    axes.set_xlim(0, 101)
-    axes.set_ylim(0, 101)
-    if roc.empty or not np.isfinite(area.rate):
-        axes.text(50, 50, "nothing to separate in this run", fontsize=SMALL, color=MUTED, ha="center")
-        return
-    across, up = (100 * np.concatenate([[0.0], roc[name].to_numpy(float)]) for name in ("false", "found"))
-    axes.step(across, up, where="post", color=BLUE, linewidth=2.0, zorder=3)
-    text = f"area {area.rate:.2f} ({area.low:.2f} to {area.high:.2f})"
-    axes.text(99, 3, text, fontsize=SMALL, color=INK, ha="right")

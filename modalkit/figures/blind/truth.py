@@ -1,4 +1,4 @@
-"""How strong, where and how far it closes: stated against true."""
+"""How strong: stated against true, parameter by parameter."""
 
 from __future__ import annotations
 
@@ -8,22 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from acquisition import InputError
-from acquisition.arrays import FloatArray
-from modalkit.blind.scoring.closing import comparable
 from modalkit.figures.style import (
     BLUE,
-    FAINT,
     INK,
-    MARGIN,
     MUTED,
     ORANGE,
     PALE,
-    SERIES,
     SMALL,
     WIDTH,
     caption,
     caption_height,
-    head,
     new_figure,
     place,
     tidy,
@@ -31,9 +25,6 @@ from modalkit.figures.style import (
 
 SPREADS = (0.1, 0.25, 0.5, 1.0)
 """Ranges of relative errors, of which the least is taken that holds nearly all; the rest is drawn at the edge [-]."""
-
-SIDE = 4.6
-"""Side of a panel [in]."""
 
 
 def severity_figure(severity: pd.DataFrame) -> Figure:
@@ -128,121 +119,3 @@ def _trials(axes: Axes, some: pd.DataFrame, begin: float, end: float, spread: fl
         color=INK,
         annotation_clip=False,
     )
-
-
-def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
-    """Draw the stated shrinkage against the true one, and the errors of place.
-
-    Parameters
-    ----------
-    closing : pandas.DataFrame
-        ``statement``, ``low95``, ``high95``, ``true`` [%], ``metric``, ``true_metric``, ``held``.
-    places : pandas.DataFrame
-        ``nearest`` and ``first`` error [-], ``held``.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    InputError
-        If there is neither.
-    """
-    stated = comparable(closing)
-    held = places[places["held"].astype(bool)]
-    if stated.empty and held.empty:
-        raise InputError(
-            "no trial states how far its gap closes, or where the cause is; there is nothing to draw"
-        )
-    title = "How far the gap closes was not stated"
-    if len(stated):
-        distance = (stated["said"] - stated["true"]).abs()
-        title = f"Stated and true shrinkage differ by {distance.mean():.1f} points of % in the mean"
-    note = (
-        "Left: share of the gap that closes; true: with the answer in the rig's own nominal body. Right: errors of "
-        "place where the answer holds the effect, of the nearest of mirrored places and of the first one."
-    )
-    top = caption_height(title, note) + 0.45
-    figure = new_figure(top + SIDE + 0.7)
-    caption(figure, title, note)
-    _closing(place(figure, MARGIN + 0.75, top, SIDE, SIDE, name="closing"), stated)
-    _places(place(figure, WIDTH - MARGIN - SIDE - 0.1, top, SIDE, SIDE, name="places"), held)
-    return figure
-
-
-def _closing(axes: Axes, stated: pd.DataFrame) -> None:
-    tidy(axes, x="true [%]", y="stated, on data held out [%]")
-    head(axes, "How far the gap closes")
-    low = 0.0
-    if len(stated):
-        low = float(min(stated["true"].quantile(0.02), stated["said"].quantile(0.02)))
-        low = max(-100.0, min(0.0 if low < 60 else 50.0, 10 * np.floor(low / 10)))
-    axes.plot([low, 100], [low, 100], color=FAINT, linewidth=1.2, zorder=1.5)
-    right = stated["held"].astype(bool).to_numpy()
-    many = min(1.0, 12.0 / np.sqrt(max(len(stated), 1)))
-    for among, colour, words in (
-        (right, BLUE, "answer holds the effect"),
-        (~right, ORANGE, "answer is false"),
-    ):
-        some = stated[among]
-        if some.empty:
-            continue
-        x = np.clip(some["true"].to_numpy(float), low, 100)
-        bars = np.clip(some[["low95", "high95"]].to_numpy(float), low, 100)
-        axes.vlines(x, bars[:, 0], bars[:, 1], color=colour, linewidth=1.0, alpha=0.35 * many, zorder=2)
-        statement = np.clip(some["said"].to_numpy(float), low, 100)
-        axes.scatter(
-            x,
-            statement,
-            s=20,
-            color=colour,
-            alpha=max(0.4, many),
-            linewidth=0,
-            zorder=3,
-            clip_on=False,
-            label=words,
-        )
-    axes.set_xlim(low, 101)
-    axes.set_ylim(low, 101)
-    if len(stated):
-        axes.legend(loc="lower right", frameon=False, fontsize=SMALL, labelcolor=INK)
-
-
-def _places(axes: Axes, held: pd.DataFrame) -> None:
-    tidy(axes, x="error of place [% of the span]", y="trials with less [%]")
-    head(axes, "Where it sits")
-    axes.set_ylim(0, 101)
-    if held.empty:
-        axes.text(
-            0.5,
-            0.5,
-            "no place was stated",
-            transform=axes.transAxes,
-            fontsize=SMALL,
-            color=MUTED,
-            ha="center",
-        )
-        return
-    axes.set_xscale("log")
-    for i, (name, words) in enumerate((("nearest", "nearest of those offered"), ("first", "the first"))):
-        error = np.sort(100 * held[name].to_numpy(float))
-        axes.step(*_steps(np.maximum(error, 0.05)), where="post", color=SERIES[i], linewidth=2.0, label=words)
-    axes.axvline(5, color=FAINT, linewidth=1.0, zorder=1.4)
-    axes.set_xlim(0.1, 100)
-    axes.set_xticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
-    axes.legend(
-        loc="upper left",
-        frameon=False,
-        fontsize=SMALL,
-        labelcolor=INK,
-        title=f"{len(held)} trials",
-        alignment="left",
-        title_fontsize=SMALL,
-    )
-
-
-def _steps(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the distribution of sorted values, up to the right edge."""
-    share = 100 * np.arange(1, len(values) + 1) / len(values)
-    return np.concatenate([[1e-9], values, [1e9]]), np.concatenate([[0.0], share, [100.0]])

@@ -18,7 +18,7 @@ from modalkit.figures.style import (
     shortened,
     text_width,
 )
-from modalkit.views.charts.causes import Explanation, explanations
+from modalkit.views.charts.causes import Bar, explanations
 from updating import Diagnosis
 
 ROWS = 7
@@ -70,7 +70,7 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
         _bracket(axes, ends[-1])
 
 
-def _under(row: Explanation, width: float) -> list[str]:
+def _under(row: Bar, width: float) -> list[str]:
     """Return the text on an answer's parameters below its bar."""
     if not row.answer:
         return []
@@ -82,7 +82,7 @@ def _under(row: Explanation, width: float) -> list[str]:
     return lines[:UNDER]
 
 
-def _bar(axes: Axes, row: Explanation, bottom: float, width: float) -> None:
+def _bar(axes: Axes, row: Bar, bottom: float, width: float) -> None:
     colour = BLUE if row.answer else FAINT
     axes.barh(bottom, width, height=0.09, color=GRID, align="edge")
     axes.barh(bottom, width * min(row.probability, 1.0), height=0.09, color=colour, align="edge")

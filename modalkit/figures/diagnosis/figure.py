@@ -97,8 +97,7 @@ def _upper(figure: Figure, diagnosis: Diagnosis, case: Case | None, errors: Mode
     )
     heading(figure, MIDDLE[0], top - 0.42, "What causes it")
     high = tall - CHANNELS + 0.2
-    structure = place(figure, RIGHT[0], top - 0.2, RIGHT[1], high, name="where")
-    draw_where(structure, diagnosis, case, width=RIGHT[1], height=high)
+    draw_where(figure, diagnosis, case, left=RIGHT[0], top=top - 0.2, width=RIGHT[1], height=high)
     heading(figure, RIGHT[0], top - 0.42, "Where it sits")
     channels = place(figure, RIGHT[0], top + tall - CHANNELS, RIGHT[1], CHANNELS, name="channels")
     draw_channels(channels, diagnosis, width=RIGHT[1], height=CHANNELS)

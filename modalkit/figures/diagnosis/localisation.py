@@ -9,14 +9,13 @@ from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
 from acquisition.quantities import hertz, probability
-from modalkit.figures.diagnosis.where import Frame, draw_where
+from modalkit.figures.diagnosis.where import draw_where
 from modalkit.figures.style import (
     BLUE,
     GRID,
     INK,
     MARGIN,
     MUTED,
-    ORANGE,
     SIGNED,
     SMALL,
     TEXT,
@@ -80,9 +79,7 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     tall = _tall(diagnosis, case)
     figure = new_figure(top + tall + (0.8 + low + 0.35 if columns else 0.3))
     caption(figure, title, note)
-    structure = place(figure, MARGIN, top, LEFT, tall, name="where")
-    draw_where(structure, diagnosis, case, width=LEFT, height=tall)
-    _concerned(structure, diagnosis, case, tall)
+    draw_where(figure, diagnosis, case, left=MARGIN, top=top - 0.2, width=LEFT, height=tall + 0.2)
     heading(figure, MARGIN, top - 0.42, "Where it sits")
     heading(figure, WIDTH - MARGIN - RIGHT, top - 0.42, "Probability of each zone")
     _list(place(figure, WIDTH - MARGIN - RIGHT, top - 0.2, RIGHT, tall + 0.2, name="zones"), diagnosis, tall)
@@ -116,32 +113,6 @@ def _columns(diagnosis: Diagnosis) -> dict[str, str]:
     """Return the kinds of data that the table of modes holds, each with its column."""
     modes = diagnosis.where.modes
     return {} if modes is None else columns_of(modes)
-
-
-def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None, tall: float) -> None:
-    """Fill the test points concerned and write their nodes."""
-    if case is None or not diagnosis.where.points or diagnosis.verdict == "unknown":
-        return
-    if case.spec.imported is not None:
-        return  # drawn in space, where a name would stand over others
-    body = outline(diagnosis, case)
-    frame = Frame.fit(body, LEFT, tall)
-    for node in diagnosis.where.points:
-        if node not in case.measured.nodes:
-            continue
-        along, across = body.points[case.measured.nodes.index(node)]
-        x, y = frame.x(along), frame.y(across) if body.width else frame.bottom
-        axes.scatter([x], [y], s=46, color=ORANGE, edgecolor=INK, linewidth=1.1, clip_on=False, zorder=7)
-        axes.text(
-            x + 0.1,
-            y - 0.17,
-            f"point {node}",
-            fontsize=SMALL,
-            color=ORANGE,
-            fontweight="bold",
-            ha="right" if x > 0.85 * LEFT else "left",
-            zorder=8,
-        )
 
 
 def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:

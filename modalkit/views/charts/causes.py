@@ -19,8 +19,8 @@ LEAST = 1e-4
 
 
 @dataclass(frozen=True)
-class Explanation:
-    """One row of the causes: its name, its parameters in words, its probability, and whether it is the answer."""
+class Bar:
+    """One bar: its name, its parameters in words, its probability, and whether it is the answer."""
 
     label: str
     detail: str
@@ -28,20 +28,20 @@ class Explanation:
     answer: bool
 
 
-def explanations(diagnosis: Diagnosis) -> list[Explanation]:
+def explanations(diagnosis: Diagnosis) -> list[Bar]:
     """Return the rows: those of the answer, then the rest by probability, with the tolerances among them."""
     chosen = set(diagnosis.sets)
     none = diagnosis.verdict == "none"
     aside = diagnosis.set_aside
     alone = without_cause(diagnosis) if none else by_chance(diagnosis)
-    rows = [Explanation("tolerances and noise alone", "", alone, none)]
+    rows = [Bar("tolerances and noise alone", "", alone, none)]
     if aside is not None and not none:
-        rows.append(Explanation("no cause", str(aside), aside.probability, False))
+        rows.append(Bar("no cause", str(aside), aside.probability, False))
     for row in diagnosis.ranking:
         detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
         if row.p_value < diagnosis.rules.rejected_fit and not none:
             detail = "does not fit"
-        rows.append(Explanation(short(row.effects), detail, row.probability, row.effects in chosen))
+        rows.append(Bar(short(row.effects), detail, row.probability, row.effects in chosen))
     return sorted(rows, key=lambda row: (not row.answer, -row.probability))
 
 

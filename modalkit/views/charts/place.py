@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from acquisition.quantities import probability
@@ -10,39 +12,49 @@ from modalkit.views.chart import Axis, Chart, Series
 from modalkit.views.outline import Outline, outline
 from updating import Case, Diagnosis
 
+FOUND = "place found"
+"""What the key calls the places of the cause."""
 
-def place_chart(diagnosis: Diagnosis, case: Case) -> Chart | None:
+
+def place_chart(diagnosis: Diagnosis, case: Case | None) -> Chart | None:
     """Return the plan of a beam or a plate; None for matrices and decks, which are drawn in space.
 
     Parameters
     ----------
     diagnosis : Diagnosis
         The answer.
-    case : Case
-        What was diagnosed, the first of several.
+    case : Case, optional
+        What was diagnosed, the first of several; without it there are neither test points nor clamps.
     """
-    if case.spec.imported is not None:
+    if case is not None and case.spec.imported is not None:
         return None
     body = outline(diagnosis, case)
     beam = body.width == 0
     tall = 0.12 * body.length if beam else body.width
-    series = [_zones(diagnosis, case, body, tall)]
-    across = np.full(len(body.points), tall / 2) if beam else body.points[:, 1]
-    text = [f"test point {n}" for n in case.measured.nodes]
-    series.append(
-        Series(
-            "test point",
-            "points",
-            body.points[:, 0],
-            across,
-            "ink",
-            {"hollow": True, "text": text, "size": 3.5},
-        )
+    series = [_zones(diagnosis, body, tall)]
+    nodes = () if case is None else case.measured.nodes
+    # of a beam at its edges: the numbers of the zones stand in the middle
+    points, sensors = (
+        np.column_stack([places[:, 0], np.full(len(places), height)]) if beam else places
+        for places, height in ((body.points, 0.0), (body.sensors, tall))
     )
-    if len(body.sensors):
-        along, own = body.sensors[:, 0], np.full(len(body.sensors), tall / 2) if beam else body.sensors[:, 1]
-        more = {"symbol": "square", "size": 5, "hollow": True, "text": ["sensor"] * len(body.sensors)}
-        series.append(Series("sensor", "points", along, own, "ink", more))
+    concerned = diagnosis.where.points if diagnosis.verdict != "unknown" else ()
+    for named in (False, True):
+        own = [i for i, node in enumerate(nodes) if (node in concerned) is named]
+        text = [f"test point {nodes[i]}" for i in own]
+        name = (
+            _listed("test point", [nodes[i] for i in own]) if named else f"test point{'s' * (len(own) > 1)}"
+        )
+        more = {"hollow": not named, "text": text, "size": 4.5 if named else 3.5}
+        if own:
+            series.append(
+                Series(name, "points", points[own, 0], points[own, 1], "orange" if named else "ink", more)
+            )
+    if len(sensors):
+        more = {"symbol": "square", "size": 5, "hollow": True, "text": ["sensor"] * len(sensors)}
+        series.append(
+            Series("sensor" + "s" * (len(sensors) > 1), "points", sensors[:, 0], sensors[:, 1], "ink", more)
+        )
     if diagnosis.verdict in ("named", "class") and diagnosis.where.locations:
         series.append(_places(diagnosis, body, tall))
     series += _clamps(body, tall)
@@ -58,14 +70,19 @@ def place_chart(diagnosis: Diagnosis, case: Case) -> Chart | None:
     )
 
 
-def _zones(diagnosis: Diagnosis, case: Case, body: Outline, tall: float) -> Series:
+def _listed(what: str, numbers: Sequence[int]) -> str:
+    return f"{what}{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
+
+
+def _zones(diagnosis: Diagnosis, body: Outline, tall: float) -> Series:
     none = diagnosis.verdict == "none"
     low, high, bottom, top, held = (np.array(c) for c in zip(*body.zones, strict=True))
     if body.width == 0:
         bottom, top = np.zeros(len(low)), np.full(len(low), tall)
-    names = [r.name for r in case.spec.regions]
-    text = [n if none else f"{n}\nprobability {probability(v)}" for n, v in zip(names, held, strict=True)]
-    written = ["" if none or v < 0.005 else f"{100 * v:.0f} %" for v in held]
+    text = [
+        n if none else f"{n}\nprobability {probability(v)}" for n, v in zip(body.names, held, strict=True)
+    ]
+    written = ["" if none or v < 0.005 else f"{100 * v:.0f}" for v in held]
     more = {
         "low": low, "high": high, "bottom": bottom, "top": top, "value": 0 * held if none else held,
         "written": written, "text": text,
@@ -74,14 +91,14 @@ def _zones(diagnosis: Diagnosis, case: Case, body: Outline, tall: float) -> Seri
 
 
 def _places(diagnosis: Diagnosis, body: Outline, tall: float) -> Series:
-    flat = [body.flat(at) for at in diagnosis.where.locations]
+    flat = [at[:2] for at in diagnosis.where.locations]
     text = [
         f"place {i + 1}\nx = {x:.4g} m" + (f", y = {y:.4g} m" if body.width else "")
         for i, (x, y) in enumerate(flat)
     ]
     more = {"text": text, "symbol": "diamond", "size": 6}
     return Series(
-        "place found",
+        FOUND,
         "points",
         [x for x, _ in flat],
         [y if body.width else tall for _, y in flat],
@@ -114,4 +131,4 @@ def _text(diagnosis: Diagnosis, body: Outline) -> str:
         if diagnosis.where.zones_by == "regions"
         else "that the cause sits there"
     )
-    return f"Each zone with the probability {by}. {size[:1].upper()}{size[1:]}."
+    return f"Each zone with the probability {by} [%]. {size[:1].upper()}{size[1:]}."

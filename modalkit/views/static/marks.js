@@ -50,9 +50,10 @@ function points(group, series, { x, y }) {
     if (v === null || series.y[i] === null) return;
     const [a, b] = [x.at(v), y.at(series.y[i])];
     if (!Number.isFinite(a) || !Number.isFinite(b)) return;
-    path += symbol(Number(n(a)), Number(n(b)), series.size ?? 4);
+    path += symbol(Number(n(a)), Number(n(b)), series.sizes?.[i] ?? series.size ?? 4);
     const error = series.error?.[i];
     if (error) bars += `M${n(a)},${n(y.at(series.y[i] - error))}L${n(a)},${n(y.at(series.y[i] + error))}`;
+    if (series.top) bars += `M${n(a)},${n(y.at(series.bottom[i]))}L${n(a)},${n(y.at(series.top[i]))}`;
     targets.push({ x: a, y: b, i, series });
   });
   if (bars) group.append(s("path", { d: bars, class: `line ${series.colour}` }));

@@ -22,7 +22,7 @@ pytestmark = IN_A_BROWSER
 def test_a_region_is_softened_and_every_number_can_be_read_on_a_phone(browser, serve, tmp_path):
     page = Page(browser, serve(make_glider(tmp_path / "glider")), viewport={"width": 390, "height": 850})
     page.open("model")
-    page.tab.locator(".heatmaplayer image").wait_for(state="attached")
+    page.tab.locator(".page-model .cell").first.wait_for(state="attached")
     assert page.tab.evaluate(OVERLAPS) == []
     before = page.tab.locator("#rms").inner_text()
     page.tab.locator("#region").select_option("wing_left_outer")
@@ -35,7 +35,7 @@ def test_a_region_is_softened_and_every_number_can_be_read_on_a_phone(browser, s
     page.open("modes")
     rows = page.tab.locator(".page-modes tbody tr")
     assert max(row.bounding_box()["height"] for row in rows.all()) < THREE_LINES
-    page.tab.locator(".heatmaplayer image").wait_for(state="attached")
+    page.tab.locator(".page-modes .cell").first.wait_for(state="attached")
     assert page.tab.evaluate(OVERLAPS) == []
     assert page.faults == []
 
@@ -53,7 +53,7 @@ def test_charts_and_tables_are_read_off(browser, shown):
         tab.get_by_label(f"cursor {name} [Hz]").fill(hertz)
         tab.keyboard.press("Enter")
     tab.get_by_text("B − A: 129.49 Hz, measured").wait_for()
-    assert tab.locator(".heatmaplayer").locator("xpath=..").get_by_text("1.00").count() == 3
+    assert tab.locator(".page-modes .drawing").get_by_text("100", exact=True).count() == 3
     tab.evaluate("window.scrollTo(0, 0)")
     tab.evaluate(
         "document.querySelector('.page-modes .chart').emit('plotly_click', {points: [{customdata: 2}]})"

@@ -64,7 +64,7 @@ def test_blind_curves_show_what_they_are_given() -> None:
     assert f"{known.right.count} of {known.right.total} right" in words(figures["blind_abstention"])
     curve = panels(figures["blind_abstention"])["abstention"].get_lines()[0]
     np.testing.assert_allclose(curve.get_ydata(), 100 * known.points["right"])
-    dots = panels(figures["blind_reliability"])["reliability"].collections[-1].get_offsets()
+    dots = panels(figures["blind_reliability"])["Reliability"].collections[-1].get_offsets()
     across, up = ([100 * row.rate for row in result.rates.of(q)] for q in (STATED, CAME_TRUE))
     np.testing.assert_allclose(dots, np.column_stack([across, up]))
     covered = result.severity["covered"].astype(bool)

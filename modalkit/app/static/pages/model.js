@@ -1,7 +1,8 @@
 // Model: what the study states, sliders for effects and factors, pairs found and pairs stated.
 
 import { get, post } from "../api.js";
-import { draw, drawFrf, line, macMatrix, modesAxis } from "../charts.js";
+import { drawFrf, line } from "../charts.js";
+import { charted } from "../drawings.js";
 import { warned } from "../asked.js";
 import { button, field, fill, fixed, h, select, short, table } from "../dom.js";
 import { form } from "./form.js";
@@ -389,24 +390,7 @@ export function open(root, app) {
       });
     }
     drawn.hidden = !found.frf;
-    matrix.hidden = !found.mac;
-    if (found.mac) {
-      await draw(
-        mac,
-        [
-          macMatrix(
-            found.mac,
-            found.mac.map((_, i) => `${i + 1}`),
-            found.mac[0].map((_, i) => `${i + 1}`),
-          ),
-        ],
-        {
-          height: 340,
-          xaxis: modesAxis("model mode", found.mac[0].length),
-          yaxis: modesAxis("test mode", found.mac.length, { autorange: "reversed" }),
-        },
-      );
-    }
+    matrix.hidden = !charted(mac, { charts: found }, ["mac"]);
   }
 
   const rms = (those) => Math.sqrt(those.reduce((sum, p) => sum + p.error_percent ** 2, 0) / those.length);

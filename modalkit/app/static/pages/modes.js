@@ -2,7 +2,7 @@
 
 import { get } from "../api.js";
 import { warned } from "../asked.js";
-import { axis, draw, drawFrf, line, logAxis, macMatrix, modesAxis, onclick } from "../charts.js";
+import { axis, draw, drawFrf, line, logAxis, onclick } from "../charts.js";
 import { figured } from "../drawings.js";
 import { button, check, field, fill, fixed, h, select, sigma, table } from "../dom.js";
 import { stabilisation } from "./stabilisation.js";
@@ -56,7 +56,9 @@ export function open(root, app) {
     listed(page.table);
     if (page.identified) controlled();
     view.indicators = null; // those of the state before
-    await Promise.all([page.identified ? indicated().then(() => charted(page.table)) : null, page.identified ? overlaid() : null, macs()]);
+    matrix.hidden = !page.mac;
+    figured(mac, page.mac ? [page.mac] : []);
+    await Promise.all([page.identified ? indicated().then(() => charted(page.table)) : null, page.identified ? overlaid() : null]);
     await damp(); // last: it may have to solve the model
   }
 
@@ -352,18 +354,6 @@ export function open(root, app) {
         line("fit", found.x2 ?? found.x, found.fitted_phase, "blue"),
       ],
       unit: found.unit,
-    });
-  }
-
-  async function macs() {
-    const values = view.page.auto_mac;
-    matrix.hidden = !values || values.length < 2 || values.some((row) => row.some((v) => v === null));
-    if (matrix.hidden) return;
-    const names = view.page.table.map((m) => `${m.mode}`);
-    await draw(mac, [macMatrix(values, names, names)], {
-      height: 360,
-      xaxis: modesAxis("mode", names.length),
-      yaxis: modesAxis("mode", names.length, { autorange: "reversed" }),
     });
   }
 
