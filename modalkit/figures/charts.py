@@ -33,12 +33,6 @@ from modalkit.workflow.overlaid import Overlaid
 from updating import Diagnosis
 from updating.correlation.frfs import CorrelatedFrfs
 
-LISTED = 24
-"""Frequencies of so many modes are listed; of more, the first and the last [-]."""
-
-MANY = 24
-"""Of more effects only those that are not surely named are compared on paper [-]."""
-
 
 def frf_figure(frfs: FrfSet, model: ModalModel | None = None, *, count: int = 4) -> Figure:
     """Draw magnitude, phase and coherence of some FRFs, with the fit over them and the modes marked.
@@ -135,7 +129,8 @@ def stabilisation_figure(
     reasons = [f"{_letter(i)}   {hertz(f)}: {text}" for i, (f, text) in enumerate(columns)]
     lines = [line for reason in reasons for line in broken(reason, room, SMALL)]
     listed = [bare_hertz(f) for f in model.modal.frequency]
-    note = f"{', '.join(listed)} Hz" if len(listed) <= LISTED else f"{listed[0]} to {listed[-1]} Hz"
+    # frequencies of so many modes are listed; of more, the first and the last
+    note = f"{', '.join(listed)} Hz" if len(listed) <= 24 else f"{listed[0]} to {listed[-1]} Hz"
     figure = chart_figure(poles_chart(model, origins), note=note, beneath=lines)
     _letters(figure.axes[0], [frequency for frequency, _ in columns])
     return figure
@@ -354,5 +349,6 @@ def planning_figure(found: Forecast) -> Figure:
         raise InputError("the forecast has fewer than two effects to draw")
     title = "What the test separates, and from what severity on"
     note = f"forecast by {found.bench.basis}, including tolerances and all uncertainties"
-    charts = [thresholds_chart(found), separations_chart(found, most=MANY)]
+    # of more effects only those that are not surely named are compared on paper
+    charts = [thresholds_chart(found), separations_chart(found, most=24)]
     return sheet_figure(Sheet(title, note, [one for one in charts if one.y.names]), columns=1)

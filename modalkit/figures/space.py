@@ -16,10 +16,6 @@ AZIMUTH, HEIGHT = -0.9, 0.5
 """Where the eye stands, about z and over the plane of x and y: as the app and the report begin [rad]."""
 
 
-AIR = 0.95
-"""Part of a panel that a structure fills: marks at its ends stay whole [-]."""
-
-
 @dataclass(frozen=True, eq=False)
 class View:
     """From places in space to inches on a panel.
@@ -47,7 +43,8 @@ class View:
         flat = points @ axes[:2].T
         low, high = flat.min(axis=0), flat.max(axis=0)
         size = np.maximum(high - low, 1e-9 * max(float(np.ptp(points)), 1e-12))
-        scale = AIR * float(np.min(np.array([width, height]) / size))
+        # part of a panel that a structure fills: marks at its ends stay whole
+        scale = 0.95 * float(np.min(np.array([width, height]) / size))
         return cls(axes, scale, np.array([width, height]) / 2 - scale * (low + high) / 2)
 
     def flat(self, points: FloatArray) -> FloatArray:

@@ -39,9 +39,6 @@ NAMED = {
 }  # fmt: skip
 """Colours by the names that charts use."""
 
-SERIES = (BLUE, ORANGE, GREEN, "#8c5fa8", "#b08900", "#5b6672")
-"""Series in the order of their use."""
-
 PROBABILITY = LinearSegmentedColormap.from_list("probability", ["#f3f6f9", "#9fc8e6", BLUE, "#073a66"])
 """White is 0, dark blue is 1."""
 

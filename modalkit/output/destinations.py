@@ -11,8 +11,6 @@ from pathlib import Path
 
 from acquisition.errors import InputError
 
-_HEAD = 4096  # bytes in which a file states its kind: a data set 151 takes 600, a header of columns 500
-_FOOTER = 1_000_000  # bytes; that of 30 columns takes 10 000
 _STORE = b'{"schema":"modalkit.'
 _SCHEMA = re.compile(rb'\s*\{\s*"schema"\s*:\s*"(modalkit\.\w+)/\d+"')
 
@@ -185,7 +183,7 @@ def _free(path: Path, kind: Kind) -> Path:
 
 def _head(path: Path) -> bytes:
     with path.open("rb") as file:
-        return file.read(_HEAD)
+        return file.read(4096)
 
 
 def _parquet_footer(path: Path) -> bytes:
@@ -195,7 +193,7 @@ def _parquet_footer(path: Path) -> bytes:
         file.seek(max(0, size - 8))
         last = file.read()
         length = int.from_bytes(last[:4], "little")
-        if last[4:] != b"PAR1" or length > min(size - 8, _FOOTER):
+        if last[4:] != b"PAR1" or length > min(size - 8, 1_000_000):
             return b""
         file.seek(size - 8 - length)
         return file.read(length)

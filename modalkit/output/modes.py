@@ -19,13 +19,6 @@ if TYPE_CHECKING:
 ENDINGS = (*sorted(UFF), ".csv", ".json")
 """What modes can be written as."""
 
-_LONGEST_HEADER = 1_000_000
-"""Bytes of a header row; that of 10 000 degrees of freedom takes a quarter of it."""
-
-
-_NOT_BY_HAND = b"scaled"
-"""A column that every table of modes written here has, and one written by hand seldom."""
-
 
 def modes_kind(path: Path | None) -> Kind:
     """Return the kind of file that modes are written as, by its ending; None is no file and of any kind.
@@ -50,8 +43,10 @@ def modes_kind(path: Path | None) -> Kind:
 
 def _is_our_table(path: Path) -> bool:
     with path.open("rb") as file:
-        names = file.readline(_LONGEST_HEADER).rstrip().split(b",")
-    return names[0] == b"frequency" and _NOT_BY_HAND in names
+        # bytes of a header row; that of 10 000 degrees of freedom takes a quarter of it
+        names = file.readline(1_000_000).rstrip().split(b",")
+    # a column that every table of modes written here has, and one written by hand seldom
+    return names[0] == b"frequency" and b"scaled" in names
 
 
 def write_modes(

@@ -10,8 +10,6 @@ from modalkit.output.names import sizes
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.ranked import Ranked
 
-NO_BREAK = "\N{NO-BREAK SPACE}"
-
 METRICS = {
     "frequency": "frequency",
     "damping": "damping",
@@ -78,7 +76,7 @@ def _detail(diagnosis: Diagnosis) -> tuple[str, str]:
         return "", ""
     if len(row.parameters) == 1:
         (estimate,) = row.parameters.values()
-        return "", f": {raised(estimate.whole)}".replace(" ", NO_BREAK)
+        return "", f": {raised(estimate.whole)}".replace(" ", "\N{NO-BREAK SPACE}")
     seated = diagnosis.where.location is not None and len(row.effects) == 1
     return (f" {located(diagnosis)}" if seated else ""), ""
 

@@ -11,9 +11,6 @@ from html import escape
 Cell = str | float | int | None
 
 
-VOID = frozenset({"img", "br"})
-"""Elements that nothing stands in."""
-
 _UNBROKEN = re.compile(r"-&gt;|\d[\d.]{0,20}e-\d{1,4}\b")
 """Where a browser would end a line behind the minus sign."""
 
@@ -55,7 +52,7 @@ def element(tag: str, *inside: str | Raw, **attributes: str) -> Raw:
     stated = "".join(
         f' {k.rstrip("_").replace("_", "-")}="{escape(v, quote=True)}"' for k, v in attributes.items() if v
     )
-    if tag in VOID:
+    if tag in frozenset({"img", "br"}):  # elements that nothing stands in
         return Raw(f"<{tag}{stated}>")
     return Raw(
         f"<{tag}{stated}>{''.join(i.markup if isinstance(i, Raw) else text(i) for i in inside)}</{tag}>"

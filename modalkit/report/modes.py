@@ -12,9 +12,6 @@ from acquisition.quantities import decimals
 from identification import mpc
 from modalkit.report.html import Cell, Column, Raw, table
 
-UNKNOWN = 4
-"""Decimals of a value whose standard deviation is not known."""
-
 
 def modes_table(modal: ModalData) -> Raw:
     """Return one row per mode; values have the digits that the best known of them determines.
@@ -51,7 +48,8 @@ def modes_table(modal: ModalData) -> Raw:
 
 def _written(sigma: FloatArray) -> Callable[[float], str]:
     known = [d for s in sigma if (d := decimals(float(s))) is not None]
-    return f"{{:.{max(known, default=UNKNOWN)}f}}".format
+    # decimals of a value whose standard deviation is not known
+    return f"{{:.{max(known, default=4)}f}}".format
 
 
 def _short(value: float) -> str:

@@ -20,9 +20,6 @@ DRAWN = ("dom.js", "scales.js", "marks.js", "plot.js", "reading.js", "chart.js")
 SPACE = ("body.js", "orbit.js", "stage.js", "scene.js", "viewer.js", "structure.js")
 """What structures in space need besides; they stand on three.js, two thirds of a megabyte."""
 
-BEGIN = "begin.js"
-"""The only script that runs by itself: it turns the texts into modules."""
-
 
 def scripts(data: Mapping[str, Any], *, space: bool) -> tuple[str, str]:
     """Return the scripts of a page as markup, and the policy that lets these run and nothing else.
@@ -41,7 +38,7 @@ def scripts(data: Mapping[str, Any], *, space: bool) -> tuple[str, str]:
     modules = "\n".join(
         f'<script type="text/plain" data-module="{n}">{_inside(t)}</script>' for n, t in texts.items()
     )
-    begin = _own(BEGIN)
+    begin = _own("begin.js")  # the only script that runs by itself: it turns the texts into modules
     markup = f"{_block(data)}\n{modules}\n<script>{begin}</script>"
     return markup, policy([begin])
 

@@ -16,14 +16,8 @@ from modalkit.report.html import Cell, Column, Raw, bullets, definitions, elemen
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.ranked import Ranked
 
-ROWS = 8
-"""Most explanations in the table, beside those of the answer."""
-
 LEAST = 0.01
 """Explanations under this probability are listed without their parameters [-]."""
-
-ALIKE = 0.01
-"""Zones whose probabilities differ by less are not listed [-]."""
 
 
 def _number(name: str, digits: int) -> Column:
@@ -138,7 +132,7 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     if not where.zones:
         return Raw("")
     values = [zone.probability for zone in where.zones]
-    if max(values) - min(values) < ALIKE:
+    if max(values) - min(values) < 0.01:  # zones whose probabilities differ by less are not listed
         return element("p", f"All {len(values)} zones are alike: {probability(values[0])} each.")
     statement = "Zones and the probability that the cause sits in each."
     if where.zones_by == "regions":
@@ -175,7 +169,8 @@ def _modes(diagnosis: Diagnosis) -> Raw:
 def the_causes(diagnosis: Diagnosis) -> Raw:
     """Return the ranking, with parameters and intervals, and what is known of the effects of the answer."""
     rows = diagnosis.ranking
-    shown = [r for i, r in enumerate(rows) if i < ROWS or r.effects in diagnosis.sets]
+    # most explanations in the table, beside those of the answer
+    shown = [r for i, r in enumerate(rows) if i < 8 or r.effects in diagnosis.sets]
     columns = [
         Column("effects"),
         Column("probability", probability),

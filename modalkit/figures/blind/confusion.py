@@ -41,9 +41,6 @@ GROUPS = {
 }
 """Kinds of rows, in their order."""
 
-GAP = 0.55
-"""Space between two kinds of rows, in cells."""
-
 
 @dataclass(frozen=True, eq=False)
 class Counts:
@@ -168,7 +165,8 @@ def _always(keys: Sequence[tuple[str, str]], columns: Sequence[str]) -> BoolArra
 
 def _heights(groups: Sequence[str]) -> FloatArray:
     """Return where each row begins, in cells, with space between two kinds."""
-    step = [0.0, *(1.0 + GAP * (a != b) for a, b in pairwise(groups))]
+    # space between two kinds of rows, in cells
+    step = [0.0, *(1.0 + 0.55 * (a != b) for a, b in pairwise(groups))]
     return np.cumsum(step)
 
 

@@ -24,8 +24,6 @@ from updating import Diagnosis
 ROWS = 7
 """Most rows shown."""
 
-ANSWERS = 4
-"""So many rows of an answer have their parameters written out."""
 
 UNDER = 3
 """Most lines under a bar."""
@@ -52,7 +50,8 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
     found = explanations(diagnosis)
     down, ends = 0.0, [0.0]
     for i, row in enumerate(found):
-        under = _under(row, width) if i < ANSWERS else []
+        # so many rows of an answer have their parameters written out
+        under = _under(row, width) if i < 4 else []
         tall = ROW + LINE * len(under)
         last = i == len(found) - 1
         if i == ROWS or down + tall + (0.0 if last else LINE) > height:

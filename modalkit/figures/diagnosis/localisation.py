@@ -41,8 +41,6 @@ LEFT, RIGHT = 7.1, 3.6
 TALL, FLAT, DEEP = 2.7, 2.0, 4.4
 """Height of both for a plate, for a beam, and in space [in]."""
 
-ALIKE = 0.01
-"""Zones whose probabilities differ by less are in no order [-]."""
 
 LISTED = 8
 """Most zones in the list."""
@@ -52,9 +50,6 @@ ROW = 0.34
 
 FAR = 10.0
 """Standard deviations at which the colour of a cell is full."""
-
-MOST = 20
-"""Most modes in the table: those that add the most."""
 
 
 def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figure:
@@ -124,7 +119,8 @@ def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
     if diagnosis.verdict == "none":
         axes.text(0, -0.35, "none: there is no cause to place", fontsize=TEXT, color=MUTED)
         return
-    alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < ALIKE
+    # zones whose probabilities differ by less are in no order
+    alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < 0.01
     zones = sorted(diagnosis.where.zones, key=lambda z: 0.0 if alike else -z.probability)
     longest = max((text_width(zone_in_words(zone.name), SMALL) for zone in zones[:LISTED]), default=0.0) / 72
     left, right = min(max(1.1, longest + 0.2), 1.9), 0.75
@@ -153,7 +149,8 @@ def _table(axes: Axes, diagnosis: Diagnosis, columns: dict[str, str], height: fl
     wide = WIDTH - 2 * MARGIN
     axes.set_xlim(0, wide)
     axes.set_ylim(-height, 0)
-    kept = np.sort(np.argsort(-modes["share [%]"].to_numpy(float), kind="stable")[:MOST])
+    # most modes in the table: those that add the most
+    kept = np.sort(np.argsort(-modes["share [%]"].to_numpy(float), kind="stable")[:20])
     left = max(text_width(name, TEXT) for name in [*columns, "mode"]) / 72 + 0.15
     cell = min((wide - left) / max(len(kept), 1), 1.1)
     tested = modes["test [Hz]"].to_numpy(float)

@@ -15,9 +15,6 @@ from updating import Case, Diagnosis
 LEAST = 0.12
 """Darkness of what has no probability, so that it is seen on white [-]."""
 
-STROKE = 0.16
-"""Length of the stroke of a direction [in]."""
-
 
 def draw_structure(axes: Axes, diagnosis: Diagnosis, case: Case, *, width: float, height: float) -> None:
     """Draw the mesh with its regions by probability, test points with their directions, and the places found.
@@ -40,7 +37,8 @@ def draw_structure(axes: Axes, diagnosis: Diagnosis, case: Case, *, width: float
     held = probabilities(diagnosis, case, mesh)
     _mesh(axes, view, mesh, held)
     if case.measured.directions is not None:
-        draw_directions(axes, view, points, case.measured.directions, length=STROKE)
+        # length of the stroke of a direction
+        draw_directions(axes, view, points, case.measured.directions, length=0.16)
     flat = view.flat(points)
     axes.scatter(flat[:, 0], flat[:, 1], s=9, color=INK, linewidth=0, zorder=5)
     _places(axes, view, diagnosis, width, height)

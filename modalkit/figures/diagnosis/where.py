@@ -13,11 +13,8 @@ from modalkit.figures.diagnosis.structure import draw_structure
 from modalkit.figures.style import BLUE, FAINT, GRID, INK, MUTED, ORANGE, SMALL, TEXT, bare, place
 from modalkit.output.location import spans
 from modalkit.output.words import located
-from modalkit.views.charts.place import FOUND, place_chart
+from modalkit.views.charts.place import place_chart
 from updating import Case, Diagnosis
-
-LABEL = 0.32
-"""Height of the line that names the place [in]."""
 
 
 def draw_where(
@@ -51,13 +48,13 @@ def draw_where(
         assert case is not None
         draw_structure(axes, diagnosis, case, width=width, height=height)
         return
-    plain = [one for one in chart.series if one.kind != "line" and one.name != FOUND]
+    plain = [one for one in chart.series if one.kind != "line" and one.name != "place found"]
     told = [replace(one, name="") for one in chart.series if one not in plain]
     chart = replace(chart, series=[*plain, *told])
     text, found = _place(diagnosis, plate=case is not None and case.spec.kind == "plate")
     weight, colour = ("bold", ORANGE) if found else ("normal", MUTED)
     axes.text(0.0, height - 0.18, text, fontsize=TEXT, fontweight=weight, color=colour)
-    over = LABEL + above(chart, width) + 0.1
+    over = 0.32 + above(chart, width) + 0.1  # height of the line that names the place
     if diagnosis.verdict != "none":
         axes.text(width, height + 0.22, "probability, %", fontsize=SMALL, color=MUTED, ha="right")
     tall = min(float(chart.more["equal"]) * width, height - over)

@@ -27,14 +27,8 @@ SORTS = {
 }
 """Kinds of what is hidden: what a key says of them, and their colours."""
 
-WHOLE = (0.0, 100.0)
-"""All of something [%]."""
-
-SQUARE = (0.0, 102.0)
-"""Ends of an axis on which 100 % is to be seen [%]."""
-
-LEAST = 0.05
-"""An error of place below this is drawn as that, on a logarithmic axis [% of the span]."""
+WHOLE, EDGE = 100.0, 102.0
+"""All of something, and where an axis ends on which it is to be seen [%]."""
 
 
 def rates_sheet(score: Score) -> Sheet:
@@ -91,9 +85,7 @@ def _rates(
     rows = list(range(len(table)))
     rate, low, high = 100 * np.array([(row.rate, row.low, row.high) for row in table]).T
     series = [
-        Series(
-            "", "bands", (), rows, "pale", {"low": [WHOLE[0]] * len(rows), "high": [WHOLE[1]] * len(rows)}
-        ),
+        Series("", "bands", (), rows, "pale", {"low": [0.0] * len(rows), "high": [WHOLE] * len(rows)}),
         Series("", "bands", (), rows, "band", {"low": low, "high": high}),
     ]
     for sort, (words, colour) in sorts.items():
@@ -101,7 +93,7 @@ def _rates(
             series.append(Series(words, "points", rate[own], own, colour))
     notes = [f"{percent(row.rate)} %   {_count(row)}" for row in table]
     return Chart(
-        name, title, "", Axis("share of the trials asked [%]", range=WHOLE), Axis(names=tuple(names)), series,
+        name, title, "", Axis("share of the trials asked [%]", range=(0.0, WHOLE)), Axis(names=tuple(names)), series,
         more={"row": 22, "notes": notes},
     )  # fmt: skip
 
@@ -133,8 +125,8 @@ def reliability_sheet(score: Score) -> Sheet:
     ]
     more = {"bottom": low, "top": high, "sizes": 3 + 7 * np.sqrt(total / total.max()), "text": text}
     reliability = Chart(
-        "reliability", "Reliability", "", Axis("probability stated for the first set [%]", range=SQUARE),
-        Axis("came true [%]", range=SQUARE),
+        "reliability", "Reliability", "", Axis("probability stated for the first set [%]", range=(0.0, EDGE)),
+        Axis("came true [%]", range=(0.0, EDGE)),
         [_even(), Series("dots as large as their bins", "points", stated, rate, "blue", more)],
     )  # fmt: skip
     roc, area = roc_curve(*detection(score.trials).T), score.rates[AREA, ALL]
@@ -146,8 +138,9 @@ def reliability_sheet(score: Score) -> Sheet:
         words = f"area {area.rate:.2f} ({area.low:.2f} to {area.high:.2f})"
         series.append(Series(words, "line", across, up, "blue", {"width": 2.0}))
     detected = Chart(
-        "roc", "Unknown separated from known by the fit", "", Axis("known effects called unknown [%]", range=SQUARE),
-        Axis("unknowable ones found [%]", range=SQUARE), series,
+        "roc", "Unknown separated from known by the fit", "",
+        Axis("known effects called unknown [%]", range=(0.0, EDGE)),
+        Axis("unknowable ones found [%]", range=(0.0, EDGE)), series,
     )  # fmt: skip
     return Sheet(
         _calibrated(score.rates.of(ERROR)),
@@ -167,7 +160,7 @@ def _calibrated(errors: Sequence[Rate]) -> str:
 
 def _even(low: float = 0.0) -> Series:
     """Return the line on which one is as large as the other."""
-    return Series("", "line", (low, WHOLE[1]), (low, WHOLE[1]), "faint")
+    return Series("", "line", (low, WHOLE), (low, WHOLE), "faint")
 
 
 def _steps(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -221,14 +214,14 @@ def _closing(stated: pd.DataFrame) -> Chart:
     ):
         some = stated[among]
         x, y, bottom, top = (
-            np.clip(some[name].to_numpy(float), low, WHOLE[1]) for name in ("true", "said", "low95", "high95")
+            np.clip(some[name].to_numpy(float), low, WHOLE) for name in ("true", "said", "low95", "high95")
         )
         if len(some):
             text = [f"trial {trial}" for trial in some["trial"]]
             series.append(
                 Series(words, "points", x, y, colour, {"bottom": bottom, "top": top, "size": 3, "text": text})
             )
-    ends = (low, SQUARE[1])
+    ends = (low, EDGE)
     return Chart(
         "closing", "How far the gap closes", "", Axis("true [%]", range=ends),
         Axis("stated, on data held out [%]", range=ends), series,
@@ -244,12 +237,12 @@ def _places(held: pd.DataFrame) -> Chart:
         error = np.sort(100 * held[name].to_numpy(float))
         if len(error):
             share = 100 * np.arange(len(error) + 1) / len(error)
-            x, y = _steps(np.concatenate([[LEAST], np.maximum(error, LEAST)]), share)
+            x, y = _steps(np.concatenate([[0.05], np.maximum(error, 0.05)]), share)
             series.append(
-                Series(words, "line", np.append(x, WHOLE[1]), np.append(y, WHOLE[1]), colour, {"width": 2.0})
+                Series(words, "line", np.append(x, WHOLE), np.append(y, WHOLE), colour, {"width": 2.0})
             )
     return Chart(
         "places", f"Where it sits, {counted(len(held), 'trial')}" if len(held) else "No place was stated", "",
-        Axis("error of place [% of the span]", log=True, range=(0.1, WHOLE[1])),
-        Axis("trials with less [%]", range=SQUARE), series, more={"lines": [5.0]},
+        Axis("error of place [% of the span]", log=True, range=(0.1, WHOLE)),
+        Axis("trials with less [%]", range=(0.0, EDGE)), series, more={"lines": [5.0]},
     )  # fmt: skip

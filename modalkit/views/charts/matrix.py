@@ -9,9 +9,6 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from modalkit.views.chart import Axis, Chart, Series
 
-WIDEST = 68
-"""Width of a cell at the most: a matrix of three modes is not to fill the page [px]."""
-
 CONFUSED = 0.3
 """From this MAC on two modes are reported as similar."""
 
@@ -68,7 +65,7 @@ def matrix_chart(
         Axis(axes[1], names=tuple(columns)),
         Axis(axes[0], names=tuple(rows)),
         [cells],
-        more={"cell": WIDEST},
+        more={"cell": 68},  # width of a cell at the most: a matrix of three modes is not to fill the page
     )
 
 

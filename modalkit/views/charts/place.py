@@ -12,9 +12,6 @@ from modalkit.views.chart import Axis, Chart, Series
 from modalkit.views.outline import Outline, outline
 from updating import Case, Diagnosis
 
-FOUND = "place found"
-"""What the key calls the places of the cause."""
-
 
 def place_chart(diagnosis: Diagnosis, case: Case | None) -> Chart | None:
     """Return the plan of a beam or a plate; None for matrices and decks, which are drawn in space.
@@ -98,7 +95,7 @@ def _places(diagnosis: Diagnosis, body: Outline, tall: float) -> Series:
     ]
     more = {"text": text, "symbol": "diamond", "size": 6}
     return Series(
-        FOUND,
+        "place found",
         "points",
         [x for x, _ in flat],
         [y if body.width else tall for _, y in flat],

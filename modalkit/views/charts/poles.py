@@ -21,8 +21,6 @@ KINDS = {
 }
 """What became of a pole: in words, and how it is drawn."""
 
-BEHIND = 600
-"""Lines of the curve behind the poles; doubled, it looks alike [-]."""
 
 ORIGINS = {
     "chain": ("mode from the chart", "down", "blue"),
@@ -41,7 +39,7 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
     order = chart.orders[chart.level]
     kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
     total = np.abs(model.frfs.values).sum(axis=0)
-    keep = extremes(total, BEHIND)
+    keep = extremes(total, 600)  # lines of the curve behind the poles; doubled, it looks alike
     total = total[keep]
     series = [
         Series(

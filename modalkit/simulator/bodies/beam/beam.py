@@ -110,18 +110,7 @@ class Beam(BeamFields):
         return row
 
     def modal_damping(self, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what damps some modes: the material as expected, and what else is viscous.
-
-        Parameters
-        ----------
-        shapes : (n_dofs, n_modes) array
-            Mass-normalised real modes [kg^-1/2].
-
-        Returns
-        -------
-        material, others : (n_modes, n_modes) arrays
-            Symmetric damping matrices in the modes [1/s].
-        """
+        """Return what damps some modes: the material as expected, and what else is viscous; as of :class:`Body`."""
         strain = self._strain_rows @ shapes
         stiffness = strain.T @ strain
         material = self.alpha * shapes.T @ self._material_mass @ shapes + self.beta * stiffness
@@ -132,18 +121,7 @@ class Beam(BeamFields):
         return material, others + moved.T @ moved
 
     def modal_losses(self, shapes: FloatArray) -> tuple[Loss, ...]:
-        """Return structural damping of the whole and of layers, and a fluid's boundary layer.
-
-        Parameters
-        ----------
-        shapes : (n_dofs, n_modes) array
-            Mass-normalised real modes [kg^-1/2].
-
-        Returns
-        -------
-        tuple of Loss
-            Those that there are.
-        """
+        """Return structural damping of the whole and of layers, and a fluid's boundary layer; as of :class:`Body`."""
         losses = []
         if self.added_loss:
             strain = self._strain_rows @ shapes
@@ -203,19 +181,7 @@ class Beam(BeamFields):
         return np.setdiff1d(np.arange(self.n_dofs), held)
 
     def real_modes(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest undamped modes.
-
-        Parameters
-        ----------
-        count : int
-            How many [-].
-
-        Returns
-        -------
-        omega : (count,) array
-            Angular frequencies; zero for rigid-body motion [rad/s].
-        shapes : (n_dofs, count) array
-            Mass-normalised shapes in all DOFs [kg^-1/2].
+        """Return the lowest undamped modes, in all DOFs; as of :class:`Body`.
 
         Notes
         -----

@@ -149,18 +149,7 @@ class Plate(PlateFields):
         )
 
     def modal_damping(self, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what damps some modes: the material as expected, and what else is viscous.
-
-        Parameters
-        ----------
-        shapes : (n_dofs, n_modes) array
-            Mass-normalised real modes [kg^-1/2].
-
-        Returns
-        -------
-        material, others : (n_modes, n_modes) arrays
-            Symmetric damping matrices in the modes [1/s].
-        """
+        """Return what damps some modes: the material as expected, and what else is viscous; as of :class:`Body`."""
         nodal = shapes[: 3 * self.grid.count]
         stiffness = nodal.T @ (self._material_stiffness @ nodal)
         material = self.alpha * nodal.T @ (self._material_mass @ nodal) + self.beta * stiffness
@@ -173,18 +162,7 @@ class Plate(PlateFields):
         return material, others
 
     def modal_losses(self, shapes: FloatArray) -> tuple[Loss, ...]:
-        """Return structural damping of the whole and of layers, and a fluid's boundary layer.
-
-        Parameters
-        ----------
-        shapes : (n_dofs, n_modes) array
-            Mass-normalised real modes [kg^-1/2].
-
-        Returns
-        -------
-        tuple of Loss
-            Those that there are.
-        """
+        """Return structural damping of the whole and of layers, and a fluid's boundary layer; as of :class:`Body`."""
         nodal, losses = shapes[: 3 * self.grid.count], []
         if self.added_loss:
             losses.append(Loss(self.added_loss * nodal.T @ (self._material_stiffness @ nodal), -1.0))
@@ -233,19 +211,7 @@ class Plate(PlateFields):
         return read.rows({field: values}, self.n_dofs)
 
     def real_modes(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest undamped modes.
-
-        Parameters
-        ----------
-        count : int
-            How many [-].
-
-        Returns
-        -------
-        omega : (count,) array
-            Angular frequencies; close to zero for rigid-body motion [rad/s].
-        shapes : (n_dofs, count) array
-            Mass-normalised shapes in all DOFs [kg^-1/2].
+        """Return the lowest undamped modes, in all DOFs; as of :class:`Body`.
 
         Notes
         -----
