@@ -13,8 +13,8 @@ from modalkit.views.chart import Chart
 
 
 @dataclass(frozen=True, eq=False)
-class Moving:
-    """Mode shapes that move.
+class InSpace:
+    """What is drawn in three dimensions.
 
     Parameters
     ----------
@@ -23,30 +23,7 @@ class Moving:
     title, text : str
         What it shows.
     page : dict
-        As of :func:`modalkit.views.shapes.shapes_page`.
-    still : callable
-        What draws them for paper.
-    """
-
-    name: str
-    title: str
-    text: str
-    page: dict[str, Any]
-    still: Callable[[], Figure]
-
-
-@dataclass(frozen=True, eq=False)
-class Standing:
-    """A structure in space, coloured by the probability of its regions.
-
-    Parameters
-    ----------
-    name : str
-        Of its element.
-    title, text : str
-        What it shows.
-    page : dict
-        As of :func:`modalkit.views.structure.structure_page`.
+        As of :func:`modalkit.views.shapes.shapes_page`, or :func:`modalkit.views.structure.structure_page`.
     still : callable
         What draws it for paper.
     """
@@ -56,6 +33,14 @@ class Standing:
     text: str
     page: dict[str, Any]
     still: Callable[[], Figure]
+
+
+class Moving(InSpace):
+    """Shapes, animated."""
+
+
+class Standing(InSpace):
+    """A structure, coloured by the probability of its regions."""
 
 
 Part = Raw | Chart | Moving | Standing

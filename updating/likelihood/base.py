@@ -129,3 +129,28 @@ class Quantity(ABC):
     @abstractmethod
     def block(self, view: View) -> Block:
         """Return residual, noise and nuisances of these data beside a state."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nuisances(ABC):
+    """Doubts of one kind in predicted constants, each a column.
+
+    Parameters
+    ----------
+    setting : Setting
+        Test and model.
+    """
+
+    setting: Setting
+
+    @abstractmethod
+    def columns(self, now: Prediction, level: FloatArray) -> FloatArray:
+        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-].
+
+        Parameters
+        ----------
+        now : Prediction
+            The modes.
+        level : (n_frf, n_modes) array
+            What predicted constants are multiplied by [kg].
+        """

@@ -14,36 +14,25 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
-from updating.likelihood.base import Setting
+from updating.likelihood.base import Nuisances
 from updating.prediction.prediction import Prediction
 from updating.thresholds import LEAST_TURN
 
 
 @dataclass(frozen=True, eq=False)
-class CloseModes:
+class CloseModes(Nuisances):
     """Nuisances of shapes that turn into each other, one of each pair of modes.
 
     Parameters
     ----------
-    setting : Setting
-        Test and model.
     further : (n_modes,) array
         Variance of ln f that is no noise of the test [-].
     """
 
-    setting: Setting
     further: FloatArray
 
     def columns(self, now: Prediction, level: FloatArray) -> FloatArray:
-        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-].
-
-        Parameters
-        ----------
-        now : Prediction
-            The modes.
-        level : (n_frf, n_modes) array
-            What predicted constants are multiplied by [kg].
-        """
+        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-]."""
         (first, second), angle = self._pairs
         columns = np.zeros((*level.shape, len(angle)))
         if not len(angle):

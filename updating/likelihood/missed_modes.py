@@ -13,33 +13,17 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.likelihood.base import Setting
+from updating.likelihood.base import Nuisances
 from updating.prediction.prediction import Prediction
 from updating.thresholds import LEAST_TURN
 
 
 @dataclass(frozen=True, eq=False)
-class MissedModes:
-    """Nuisances of constants that hold those of a mode that the model has and the test has not, one of each pair.
-
-    Parameters
-    ----------
-    setting : Setting
-        Test and model.
-    """
-
-    setting: Setting
+class MissedModes(Nuisances):
+    """Nuisances of constants that hold those of a mode that the model has and the test has not, one of each pair."""
 
     def columns(self, now: Prediction, level: FloatArray) -> FloatArray:
-        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-].
-
-        Parameters
-        ----------
-        now : Prediction
-            The modes.
-        level : (n_frf, n_modes) array
-            What predicted constants are multiplied by [kg].
-        """
+        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-]."""
         before, lost = self.setting.nominal, self.setting.missed
         (mode, missed), share = self._pairs
         added = (lost.seen * lost.hit)[:, missed]

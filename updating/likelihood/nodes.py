@@ -13,23 +13,15 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.likelihood.base import Setting
+from updating.likelihood.base import Nuisances
 from updating.likelihood.hit_scatter import level_errors
 from updating.prediction.prediction import Prediction
 from updating.thresholds import LEAST_CONSTANT_NOISE
 
 
 @dataclass(frozen=True, eq=False)
-class Nodes:
-    """Nuisances of what fixed transducers read besides, one of each mode and transducer.
-
-    Parameters
-    ----------
-    setting : Setting
-        Test and model.
-    """
-
-    setting: Setting
+class Nodes(Nuisances):
+    """Nuisances of what fixed transducers read besides, one of each mode and transducer."""
 
     @property
     def present(self) -> bool:
@@ -37,15 +29,7 @@ class Nodes:
         return len(self._shared) > 0
 
     def columns(self, now: Prediction, level: FloatArray) -> FloatArray:
-        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-].
-
-        Parameters
-        ----------
-        now : Prediction
-            The modes.
-        level : (n_frf, n_modes) array
-            What predicted constants are multiplied by [kg].
-        """
+        """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-]."""
         n_frf, n_modes = now.constants.shape
         columns = np.zeros((n_frf, n_modes, len(self._shared), n_modes))
         if self.present:
