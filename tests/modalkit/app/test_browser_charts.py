@@ -53,7 +53,7 @@ def test_charts_and_tables_are_read_off(browser, shown):
         tab.get_by_label(f"cursor {name} [Hz]").fill(hertz)
         tab.keyboard.press("Enter")
     tab.get_by_text("B − A: 129.49 Hz, measured").wait_for()
-    assert tab.locator(".page-modes .drawing").get_by_text("100", exact=True).count() == 3
+    assert tab.locator(".page-modes text.in").get_by_text("100", exact=True).count() == 3
     tab.evaluate("window.scrollTo(0, 0)")
     tab.evaluate(
         "document.querySelector('.page-modes .chart').emit('plotly_click', {points: [{customdata: 2}]})"
