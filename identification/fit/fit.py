@@ -158,7 +158,10 @@ def with_named(fitted: Fitted, add: Sequence[float], *, band: tuple[float, float
     InputError
         If no mode can be kept where one is named.
     """
-    return _held(fitted.frfs, _with_added(fitted.frfs, fitted, add, band), band)
+    frfs = fitted.frfs
+    held = _held(frfs, _with_added(frfs, fitted, add, band), band)
+    manual_selection.must_have_a_mode(held.fit.poles, inside(held.fit.poles, band, frfs.df), add, frfs.df)
+    return held
 
 
 def provisional(fitted: Fitted, hertz: float) -> Fit:
