@@ -138,7 +138,16 @@ export async function draw(element, traces, given = {}) {
   if (!element.isConnected) return;
   element.classList.add("chart");
   await library.react(element, traces, layout(given), OPTIONS);
+  if (observed.has(element)) return;
+  observed.add(element);
+  const fitted = () => {
+    const wide = element.clientWidth; // 0 while the panel is hidden
+    if (wide && element._fullLayout && Math.abs(element._fullLayout.width - wide) > 1) library.Plots.resize(element);
+  };
+  new ResizeObserver(fitted).observe(element); // plotly itself follows the window alone, not panels beside it
 }
+
+const observed = new WeakSet();
 
 /** Call back with the place and the trace of what is clicked in a chart. */
 export async function onclick(element, call) {

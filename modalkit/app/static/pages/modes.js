@@ -92,13 +92,15 @@ export function open(root, app) {
       view.typed = typed; // refused: to be mended where it was typed
       controlled();
     };
-    const bandNow = () => banded({ low: number(low), high: number(high) });
+    const rounded = (value) => String(Number(value.toPrecision(6)));
+    const limited = (input, value) => (input.value === rounded(value) ? value : number(input)); // untouched: all digits
+    const bandNow = () => banded({ low: limited(low, page.band[0]), high: limited(high, page.band[1]) });
     const orderNow = () => app.act("order", { order: order.value ? Number(order.value) : null });
     const limit = (end, value) =>
       h("input", {
         type: "text",
         inputmode: "decimal",
-        value: view.typed[end] ?? String(value),
+        value: view.typed[end] ?? rounded(value),
         size: 7,
         "aria-label": `${end}est frequency of the band`,
         id: `band-${end}`,
