@@ -244,7 +244,7 @@ def test_cmif_has_a_peak_for_each_of_two_modes_at_one_frequency() -> None:
     np.testing.assert_allclose(table[2], 2.0 * np.abs(h) ** 2, rtol=1e-12)
     assert table.index.name == "frequency [Hz]" and table[2].idxmax() == 100.0
     assert mk.cmif(frfs.select(np.arange(5))).attrs["left_out"] == ["3+Z"]
-    assert set(mk.draw(frfs)) == {"frf", "cmif"}
+    assert set(mk.draw(frfs)) == {"frf", "cmif", "mvmif"}
     with pytest.raises(InputError, match="every reference"):
         mk.cmif(frfs.select(np.array([0, 3])))
 
