@@ -73,7 +73,7 @@ class LocalMass(Effect):
     named = ("region",)
     screened = MappingProxyType({"extent": SCREENED})
     repeats = True
-    separated_by = "look for what sticks there and weigh it, or the part; or more points on it"
+    separated_by = "find the added part and weigh it; or measure more points on it"
     fidelity = 0.03
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -84,14 +84,14 @@ class LocalMass(Effect):
             return (Parameter("factor", "-", *FACTORS, why, log=True),)
         why += "; uniform in the logarithm of the mass on either side"
         factor = Parameter("factor", "-", *FACTORS, why, log=True)
-        why = "what is longer goes to the whole structure, what is shorter moves as a body does"
+        why = "a longer one is the whole structure; a shorter one has the effect of a body"
         return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why, natural=("low",)), factor)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need regions with masses of their own where there are matrices."""
         if predictor.spec.kind != "matrices" or len(heavy_regions(predictor)) > 1:
             return None
-        what = "the matrices have no mass_parts: nothing can be heavier at a place; give one per region"
+        what = "the matrices have no mass_parts: the mass of a place cannot be changed; give one per region"
         return Obstacle(Lack.MODEL, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:

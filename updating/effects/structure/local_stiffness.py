@@ -83,14 +83,14 @@ class LocalStiffness(Effect):
         lost = Parameter("loss", "-", *LOSSES, why, natural=EDGES)
         if spec.kind == "matrices":
             return (lost,)
-        why = "what is longer is a region, not a place; what is shorter makes no other change than this"
+        why = "a longer one is a region, not a place; a shorter one has the same effect"
         return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why, natural=("low",)), lost)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need regions where there are matrices."""
         if predictor.spec.kind != "matrices" or len(stiff_regions(predictor)) > 1:
             return None
-        what = "the matrices have no stiffness_parts: nothing can soften or stiffen at a place; give one per region"
+        what = "the matrices have no stiffness_parts: the stiffness of a place cannot be changed; give one per region"
         return Obstacle(Lack.MODEL, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:

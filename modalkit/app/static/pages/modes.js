@@ -141,11 +141,11 @@ export function open(root, app) {
         { class: "row" },
         field("Band", h("span", {}, low, " to ", high), "Hz"),
         button("Set", bandNow, { id: "band-set" }),
-        page.band_stated ? button("As the force reaches", () => banded({})) : null,
+        page.band_stated ? button("Band of the force", () => banded({})) : null,
         field("Order", order),
         button("Set", orderNow, { id: "order-set" }),
         field(
-          "Behind it",
+          "Background curve",
           select(
             [
               ["sum", "sum of |H|"],
@@ -285,7 +285,7 @@ export function open(root, app) {
       { name: "damping [%]", number: true },
       { name: "σ [%]", number: true },
       { name: "MPC", number: true },
-      { name: "where from", wide: true },
+      { name: "origin", wide: true },
       ...(view.page.identified ? [{ name: "change" }] : []),
     ];
     const percent = (v) => (v === null ? null : 100 * v);
