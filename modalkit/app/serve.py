@@ -26,7 +26,7 @@ def serve(
     browser: bool = True,
     ready: Callable[[str], None] = lambda address: None,
 ) -> None:
-    """Serve a study, a data file or a folder of text until the process is interrupted.
+    """Serve a study, a data file or a folder to import until the process is interrupted.
 
     Parameters
     ----------
