@@ -125,7 +125,6 @@ function layout(given) {
 
 const OPTIONS = {
   displaylogo: false,
-  responsive: true,
   modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
   showSendToCloud: false, // nothing is uploaded to anybody
   plotlyServerURL: "",
@@ -137,14 +136,14 @@ export async function draw(element, traces, given = {}) {
   const library = await plotly();
   if (!element.isConnected) return;
   element.classList.add("chart");
-  await library.react(element, traces, layout(given), OPTIONS);
+  await library.react(element, traces, { ...layout(given), width: element.clientWidth || undefined }, OPTIONS);
   if (observed.has(element)) return;
   observed.add(element);
   const fitted = () => {
     const wide = element.clientWidth; // 0 while the panel is hidden
-    if (wide && element._fullLayout && Math.abs(element._fullLayout.width - wide) > 1) library.Plots.resize(element);
+    if (wide && element.layout && element.layout.width !== wide) library.relayout(element, { width: wide });
   };
-  new ResizeObserver(fitted).observe(element); // plotly itself follows the window alone, not panels beside it
+  new ResizeObserver(fitted).observe(element); // plotly's own follows the window alone, and gives up the height
 }
 
 const observed = new WeakSet();

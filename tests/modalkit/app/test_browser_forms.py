@@ -110,6 +110,10 @@ WIDER = """[...document.querySelectorAll(".js-plotly-plot")]
   .filter(([drawn, wide]) => Math.abs(drawn - wide) > 1)"""
 """Charts that are not as wide as their place."""
 
+HEIGHTS = """[...document.querySelectorAll(".js-plotly-plot")]
+  .map((e) => e.querySelector("svg.main-svg").getBoundingClientRect().height)"""
+"""Heights of the charts [px]."""
+
 
 def test_pages_fill_as_results_come(browser, serve, beam):
     """FRFs before the poles, single causes before the answer."""
@@ -135,6 +139,12 @@ def test_pages_fill_as_results_come(browser, serve, beam):
     )  # the third beside the second, which got narrower
     tab.wait_for_timeout(500)
     assert tab.evaluate(WIDER) == []
+    heights = tab.evaluate(HEIGHTS)
+    assert min(heights) > 200
+    tab.set_viewport_size({"width": 900, "height": 700})
+    tab.wait_for_timeout(1000)
+    assert tab.evaluate(WIDER) == []
+    assert tab.evaluate(HEIGHTS) == heights
     page.open("diagnosis")
     tab.locator("#start-diagnose").click()
     tab.locator("#so-far tbody tr").nth(3).wait_for()
