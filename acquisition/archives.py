@@ -49,7 +49,7 @@ def members(path: Path) -> dict[str, bytes]:
         with zipfile.ZipFile(path) as archive:
             infos = archive.infolist()
             if sum(info.file_size for info in infos) > allowed(packed):
-                raise ValueError(f"{packed} bytes that unpack to more than {allowed(packed)}")
+                raise ValueError(f"{packed} bytes that decompress to more than {allowed(packed)}")
             if any(info.compress_size > packed for info in infos):  # zipfile would make room for them
                 raise ValueError("an array of more bytes than the archive has")
             if len({info.filename.removesuffix(".npy") for info in infos}) < len(infos):

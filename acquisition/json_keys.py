@@ -56,5 +56,5 @@ def check_same_keys(records: Sequence[Mapping[str, Any]], where: str) -> None:
         odd = sorted(set(record) ^ set(records[0]))
         if odd:
             raise InputError(
-                f"{where}: {odd[0][:40]!r} stands not in all records, 1 and {number} differ; give all the same keys"
+                f"{where}: {odd[0][:40]!r} is missing from some records (1 and {number} differ); give all the same keys"
             )

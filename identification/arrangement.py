@@ -37,6 +37,7 @@ class Arrangement:
         return np.flatnonzero((self.index >= 0).all(axis=1))
 
 
+@lru_cache(maxsize=4096)
 def unsigned(dof: Dof) -> Dof:
     """Return the same degree of freedom in its positive direction."""
     return Dof(dof.node, abs(dof.direction))

@@ -91,7 +91,7 @@ def order_list(frfs: FrfSet, order: int, *, poly_reference: bool) -> list[int]:
     """
     columns = len(arrange(frfs).columns) if poly_reference else 1
     if order < 2:
-        raise InputError(f"order {order} leaves no room for a mode; use 2 or more")
+        raise InputError(f"order {order} is too low for a mode; use 2 or more")
     if order > _HIGHEST:
         raise InputError(f"order {order} is beyond {_HIGHEST}; divide the band instead")
     carried = max(2, len(frfs.frequency) // 2)

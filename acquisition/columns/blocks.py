@@ -161,7 +161,7 @@ def read_text(path: Path) -> list[str]:
             return raw.decode("utf-16").splitlines()
         except UnicodeDecodeError as error:
             raise InputError(
-                f"{path}: marked as UTF-16 and is not ({error.reason}); export it again"
+                f"{path}: marked as UTF-16, but is not ({error.reason}); export it again"
             ) from error
     raw = raw.rstrip(b"\x1a")
     if len(raw.translate(None, _CONTROL)) < len(raw):
@@ -253,8 +253,8 @@ def _check_below(below: Sequence[str], number: int, style: Style, path: Path) ->
         fields = [field for field in style.split(line) if field]
         if all(style.is_number(field) for field in fields):
             raise InputError(
-                f"{path}, line {line_number}: {line.strip()[:60]!r} behind the last line of numbers is cut "
-                "or broken; correct or remove it"
+                f"{path}, line {line_number}: {line.strip()[:60]!r} after the last line of numbers is cut "
+                "off or damaged; correct or remove it"
             )
 
 

@@ -202,8 +202,17 @@ def direction_in(name: str) -> str | None:
 
 
 def node_pattern(paths: Sequence[Path]) -> Guess | None:
-    """Return the pattern of file names that states the node, ``P{node}_*.csv``; None if the names state none."""
-    words = [re.split(r"(\d+)", path.name) for path in paths]
+    """Return the pattern of file names that states the node, ``P{node}_*.csv``; None if the names state none.
+
+    Files of several folders are named with theirs where these differ in digits alone, ``P{node}/hit*.csv``.
+    """
+    folders = len({path.parent for path in paths}) > 1
+    with_folder = _node_pattern([f"{p.parent.name}/{p.name}" for p in paths]) if folders else None
+    return with_folder or _node_pattern([path.name for path in paths])
+
+
+def _node_pattern(names: Sequence[str]) -> Guess | None:
+    words = [re.split(r"(\d+)", name) for name in names]
     if len({tuple(w[::2]) for w in words}) > 1 or len(words[0]) < 3:
         return None
     numbers = range(1, len(words[0]), 2)

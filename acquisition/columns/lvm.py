@@ -38,8 +38,8 @@ def lvm_blocks(path: Path, lines: Sequence[str]) -> list[Block]:
     each = [sum(a < i < b for i in starts) for a, b in itertools.pairwise(ends)]
     if early or not each or each != [1] * len(starts):
         raise InputError(
-            f"{path}: the headers do not end as they begin, {len(starts)} of Channels and {max(len(ends) - 1, 0)} "
-            "ends; the file was cut off or damaged, export it again"
+            f"{path}: {len(starts)} headers begin with Channels, but {max(len(ends) - 1, 0)} headers end; "
+            "the file was cut off or damaged, export it again"
         )
     try:
         return _segments(path, lines, ends, starts)
@@ -62,7 +62,7 @@ def _segments(path: Path, lines: Sequence[str], ends: Sequence[int], starts: Seq
         keys.add(f"Y_Unit_Label {header.get('Y_Unit_Label', [])}")
         if odd := sorted(keys ^ (stated or keys)):
             raise InputError(
-                f"{path}, line {begin + 1}: {odd[0]!r} stands not in the headers of all segments; export again"
+                f"{path}, line {begin + 1}: {odd[0]!r} is missing from the headers of some segments; export it again"
             )
         stated = keys
         body = _body(lines, end + 2, stop)
@@ -118,7 +118,7 @@ def _check_comments(path: Path, body: Sequence[str], first: int, width: int, sty
         beyond = [field for field in style.split(line)[width:] if field and style.is_number(field)]
         if beyond:
             raise InputError(
-                f"{path}, line {number}: {beyond[0][:40]!r} stands beyond the {width} columns; export the file again"
+                f"{path}, line {number}: {beyond[0][:40]!r} is outside the {width} columns; export the file again"
             )
 
 

@@ -32,7 +32,7 @@ from acquisition.columns.layout import Layout
 from acquisition.columns.lvm import is_lvm, lvm_blocks
 from acquisition.columns.mat_proposal import frf_array, of_mat
 from acquisition.errors import InputError
-from acquisition.recorders import ARRAYS, Channels, arrays, is_recorded, listed
+from acquisition.recorders import ARRAYS, Channels, all_arrays, is_recorded, listed
 
 BEGINS = "# Layout by modalkit"
 """How a layout that was written here begins."""
@@ -80,7 +80,7 @@ def propose_layout(paths: Sequence[str | Path], *, text: Layout | None = None) -
         f"{BEGINS} from {files[0].name}: guesses, to be corrected. Not in the files: where the nodes are,",
         "# and which way hammer and transducers point. A table [nodes] gives places, 1 = [0.0, 0.0, 0.0] in m.",
     ]
-    found = frf_array(arrays(files[0])) if files[0].suffix.lower() == ".mat" else None
+    found = frf_array(all_arrays(files[0])) if files[0].suffix.lower() == ".mat" else None
     if found is not None:
         return "\n".join([*head, *of_mat(found)]) + "\n"
     text = Layout(columns=()) if text is None else text

@@ -160,7 +160,7 @@ def scaled(block: Channels, columns: Sequence[Column], more: Sequence[int] = ())
     if not np.isfinite(values).all():
         label = columns[int(np.argmin(np.isfinite(values).all(axis=1)))].label
         raise InputError(
-            f"{block.where}: {label} holds numbers beyond any in SI units; check its unit, or record it again"
+            f"{block.where}: {label} holds numbers that are too large in any unit; check its unit, or record it again"
         )
     return values
 
@@ -172,13 +172,13 @@ def _form(layout: Layout) -> Form:
     if len(forces) != 1 or not responses:
         raise InputError(
             f"{layout.source}: {len(forces)} columns of force and {len(responses)} of response; "
-            "a hammer test has one force and one response or more"
+            "a hammer test needs one force and at least one response"
         )
     form = QUANTITIES[kinds[0]]
     if len(kinds) > 1 or form is None or kinds[0] in ("accelerance", "mobility", "receptance"):
         raise InputError(
-            f"{layout.source}: responses of {', '.join(kinds)}; a hammer test has all acceleration, "
-            "all velocity or all displacement: read others as a test of their own"
+            f"{layout.source}: responses of {', '.join(kinds)}; all responses of a test are "
+            "accelerations, velocities or displacements: read the others as a separate test"
         )
     return form
 
@@ -240,7 +240,7 @@ def _stated_rate(block: Channels, index: Sequence[int], layout: Layout) -> float
     if stated is not None and given is not None and abs(stated - given) > SAME_RATE * given:
         raise InputError(
             f"{block.path}: sampled at {stated:g} Hz by its header, at {given:g} Hz by {layout.source}; "
-            "take the wrong one out"
+            "remove the wrong one"
         )
     return float(stated if given is None else given)  # type: ignore[arg-type]
 

@@ -27,7 +27,7 @@ class FileRule:
     ----------
     match : str
         Pattern of file names, as ``point_07_*.csv``; ``{node}`` and ``{direction}`` stand for what the name states,
-        ``P{node}_*.csv``.
+        ``P{node}_*.csv``. With folders, ``P{node}/*.csv``, the folders count too.
     node : int or None
         Node in these files; None for that in the name, or that of the column.
     direction : str
@@ -55,9 +55,10 @@ class FileRule:
 
     def of(self, path: Path) -> FileRule | None:
         """Return the rule with the point that a file's name states; None if it is not for this file."""
+        name = "/".join(path.parts[-1 - self.match.count("/") :])
         if NODE not in self.match and DIRECTION not in self.match:
-            return self if fnmatchcase(path.name, self.match) else None
-        found = _pattern(self.match).match(path.name)
+            return self if fnmatchcase(name, self.match) else None
+        found = _pattern(self.match).match(name)
         if found is None:
             return None
         stated = found.groupdict()

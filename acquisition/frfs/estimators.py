@@ -216,4 +216,4 @@ def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) ->
 def _most(verdicts: Sequence[HitVerdict]) -> str:
     """Return the fault that most hits have."""
     usual = usual_fault(verdicts)
-    return "" if usual is None else f" ({usual[0]} of {len(verdicts)} refused for: {usual[1]})"
+    return "" if usual is None else f" (most frequent reason, {usual[0]} of {len(verdicts)} hits: {usual[1]})"

@@ -123,7 +123,7 @@ class FrfSet(Displayed):
                 f"{self.source}: unknown window {self.window!r}; use one of {', '.join(FRF_WINDOWS)}"
             )
         if n_frf == 0 or n_lines < 2:
-            raise InputError(f"{self.source}: {n_frf} FRFs of {n_lines} lines; nothing to work on")
+            raise InputError(f"{self.source}: {n_frf} FRFs of {n_lines} lines; the set is empty")
         if len(self.references) != n_frf or self.values.shape != (n_frf, n_lines):
             raise InputError(
                 f"{self.source}: values have shape {self.values.shape} but there are {n_frf} responses, "

@@ -134,8 +134,8 @@ def split_hits(
     points = tuple(_cut(test.points[k], rows, length) for k, rows in kept.items() if rows)
     if not points:
         raise InputError(
-            f"{test.source}: no hit has the {length / test.rate:g} s of a record to itself, before the next or the "
-            f"end; {ELSE}"
+            f"{test.source}: no hit is followed by {length / test.rate:g} s without the next hit or the end of the "
+            f"record; {ELSE}"
         )
     count = sum(p.count for p in points)
     statement = (

@@ -156,7 +156,7 @@ def decide(
     wanted, unwanted = _named(use, known), _named(leave, known)
     if wanted & unwanted:
         point, hit = min(wanted & unwanted)
-        raise InputError(f"hit {hit} at {point} is named both to use and to leave out; decide for one")
+        raise InputError(f"hit {hit} at {point} is listed under both use and leave; remove it from one")
     decided = []
     for v in proposals:
         name = (str(v.point), v.hit)

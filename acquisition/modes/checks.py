@@ -73,7 +73,7 @@ def _ratios(modal: ModalData, path: Path, percent: str) -> None:
         worst = float(damping[wrong[0]])
         advice = "give it a value, or leave it empty" if worst < 0 else f"if it is in %, write {percent}"
         raise InputError(
-            f"{path}: damping ratio {worst:g} of mode {wrong[0] + 1}: it lies from 0 to 1; {advice}"
+            f"{path}: damping ratio {worst:g} of mode {wrong[0] + 1}: it must be between 0 and 1; {advice}"
         )
 
 

@@ -113,7 +113,7 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
             raise InputError(f"{path}: {entry[:40]!r} in column {name!r} {_fault(entry)}")
     numbers = np.array([float(word) for word in words], dtype=np.float64)
     if np.isinf(numbers).any():
-        raise InputError(f"{path}: a number in column {name!r} is beyond all bounds; correct it")
+        raise InputError(f"{path}: a number in column {name!r} is too large; correct it")
     return numbers * np.where(share, PERCENT, scale)
 
 
@@ -156,5 +156,7 @@ def components(table: pd.DataFrame, dofs: list[str], part: str, path: Path) -> F
     wanted = [f"{dof} {part}".strip() for dof in dofs]
     if names and sorted(names) != sorted(wanted):
         odd = sorted(set(names).symmetric_difference(wanted))[0]
-        raise InputError(f"{path}: column {odd!r} stands without its like; give every shape column its own")
+        raise InputError(
+            f"{path}: column {odd!r} has no counterpart; every shape needs a column of this kind, or none"
+        )
     return np.array([numbers(table[name], name, path) for name in wanted]) if names else None

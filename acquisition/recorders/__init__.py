@@ -84,7 +84,7 @@ def listed(path: Path) -> Sequence[Channels]:
     return all_records(path, module.named_arrays, module.names_of(path))
 
 
-def arrays(path: Path) -> Mapping[str, AnyArray]:
+def all_arrays(path: Path) -> Mapping[str, AnyArray]:
     """Return all arrays of numbers of a file of named arrays.
 
     Raises

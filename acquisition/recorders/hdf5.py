@@ -45,7 +45,7 @@ def _check_end(path: Path) -> None:
     at = addresses + 2 * width
     stated = int.from_bytes(head[at : at + width], "little")
     if stated != size:
-        raise ValueError(f"it ends at byte {stated} by its head, and has {size}")
+        raise ValueError(f"its header states {stated} bytes, the file has {size}")
 
 
 def named_arrays(path: Path, names: Sequence[str]) -> Named:
@@ -121,8 +121,8 @@ def _check_bits(found: Any, name: str, path: Path, h5py: Any) -> None:
     if found.dtype.kind not in "fiu" or h5py.h5t.py_create(found.dtype, logical=True) == found.id.get_type():
         return
     raise InputError(
-        f"{path}: {name!r} states a layout of bits that no {8 * found.dtype.itemsize}-bit number has; the file is "
-        "damaged, or export it again with ordinary numbers"
+        f"{path}: {name!r} has an unknown format of {8 * found.dtype.itemsize}-bit numbers; the file is "
+        "damaged, or has to be exported again with standard numbers"
     )
 
 

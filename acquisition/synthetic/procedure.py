@@ -86,7 +86,7 @@ class HammerPlan:
     Raises
     ------
     InputError
-        If a number makes no sense.
+        If a number is invalid.
     """
 
     rate: float = 4096.0
@@ -129,7 +129,7 @@ class HammerPlan:
         ranges = ("force_range", "response_range")
         wrong += [name for name in ranges if getattr(self, name) is not None and not getattr(self, name) > 0]
         if wrong:
-            raise InputError(f"hammer plan: {wrong[0]} = {getattr(self, wrong[0])} makes no sense")
+            raise InputError(f"hammer plan: {wrong[0]} = {getattr(self, wrong[0])} is invalid")
         if self.anti_alias not in ("smooth", "sharp"):
             raise InputError(f'hammer plan: unknown filter {self.anti_alias!r}; use "smooth" or "sharp"')
         if self.form not in FORMS or self.pulse not in ("haversine", "half-sine"):

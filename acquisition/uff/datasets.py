@@ -257,7 +257,7 @@ def _read_mode(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
     return replace(
         info,
         message=f"frequency and damping are exactly those of {where}, with another shape: a damaged copy, or an exact "
-        "pair; both are kept, take the wrong one out",
+        "pair; both are kept; remove the wrong one",
     )
 
 

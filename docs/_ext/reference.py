@@ -240,6 +240,20 @@ def api(room: str) -> str:
     return "\n".join([*head, *lines])
 
 
+def names(room: str) -> str:
+    """Return a table of the public names of a room with what each is in a sentence."""
+    module = importlib.import_module(room)
+    rows = []
+    for name in module.__all__:
+        thing = getattr(module, name)
+        own = inspect.isclass(thing) or inspect.isroutine(thing) or isinstance(thing, ModuleType)
+        text = (inspect.getdoc(thing) or "").split("\n\n")[0] if own else ""
+        signature = f"`{name}{'()' if inspect.isroutine(thing) else ''}`"
+        if text:
+            rows.append((signature, text.replace("``", "`")))
+    return _table(("name", "what it is"), rows)
+
+
 def _home(thing: object) -> str:
     return str(getattr(thing, "__module__", "")).split(".")[0]
 
@@ -271,5 +285,6 @@ MAKERS: dict[str, Callable[[], str]] = {
     "rules": rules,
     "thresholds": thresholds,
     **{f"api {room}": (lambda room=room: api(room)) for room in ROOMS},
+    **{f"names {room}": (lambda room=room: names(room)) for room in ROOMS},
 }
 """What ``<!-- made: NAME -->`` on a page stands for."""

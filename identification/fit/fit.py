@@ -158,7 +158,8 @@ def with_named(fitted: Fitted, add: Sequence[float], *, band: tuple[float, float
     InputError
         If no mode can be kept where one is named.
     """
-    return _held(fitted.frfs, _with_added(fitted.frfs, fitted, add, band), band)
+    frfs = fitted.frfs
+    return _held(frfs, _with_added(frfs, fitted, add, band), band, add)
 
 
 def provisional(fitted: Fitted, hertz: float) -> Fit:
@@ -198,14 +199,29 @@ def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tupl
     )
 
 
-def _held(frfs: FrfSet, fitted: Fitted, band: tuple[float, float]) -> Fitted:
-    """Hold residues to rank one where several references were measured and agree on the shapes."""
+def _held(frfs: FrfSet, fitted: Fitted, band: tuple[float, float], add: Sequence[float]) -> Fitted:
+    """Hold residues to rank one where several references were measured and agree on the shapes.
+
+    A mode that the user names may leave its place as residues are held; it is refused at the step that does so.
+    """
     places = sorted_frfs(frfs)
     if places is None:
         return fitted
     modes = inside(fitted.fit.poles, band, frfs.df)
     fade = window_shaped.at_start(fitted.weights.fade)
-    held = hold_to_rank_one(frfs, fitted.fit, fitted.weights, places, modes, inflation=fade)
+
+    def stayed(poles: ComplexArray) -> None:
+        manual_selection.must_have_a_mode(poles, inside(poles, band, frfs.df), add, frfs.df)
+
+    held = hold_to_rank_one(
+        frfs,
+        fitted.fit,
+        fitted.weights,
+        places,
+        modes,
+        inflation=fade,
+        watch=stayed if add else lambda _: None,
+    )
     if held.excess > 1.0:
         return replace(fitted, rank_excess=held.excess)
     result = replace(fitted, fit=held.fit, held=held)

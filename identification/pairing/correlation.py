@@ -156,8 +156,8 @@ def _notes(groups: tuple[Subspace, ...], n_dofs: int) -> tuple[str, ...]:
         ours, theirs = (", ".join(str(i + 1) for i in side) for side in (group.test, group.model))
         stated.append(
             f"test modes {ours} and model modes {theirs} span the same space (largest angle "
-            f"{group.angle:.0f} degrees), but are mixed differently, as close modes are after the smallest "
-            "change; their single MACs are meaningless"
+            f"{group.angle:.0f} degrees), but are mixed differently: close modes mix after the smallest "
+            "change, so their single MACs are meaningless"
         )
     if n_dofs < 4:
         stated.append(f"{n_dofs} degrees of freedom in common: a high MAC is weak evidence")

@@ -70,12 +70,12 @@ def lines_together(frfs: FrfSet, fitted: Fitted, density: FloatArray) -> FloatAr
     most = max(1, min(_MOST_LAGS, white.shape[1] // 4))
     lags = np.clip(np.ceil(2.0 * width), _LEAST_LAGS, most).astype(np.int64)
     share = density / density.sum(axis=1, keepdims=True)
-    power = _correlation(white, 0)
+    power, *products = _correlations(white, int(lags.max()))
     together = np.ones(len(lags))
     expected = np.ones(len(lags))
-    for lag in range(1, int(lags.max()) + 1):
+    for lag, product in enumerate(products, start=1):
         weight = 2.0 * np.maximum(1.0 - lag / (lags + 1.0), 0.0)
-        mean = share[:, : share.shape[1] - lag] @ _correlation(white, lag) / (share @ power)
+        mean = share[:, : len(product)] @ product / (share @ power)
         together += weight * mean
         expected += weight * _of_window_shaped_noise(fitted.weights.fade, lag)
     values = len(white) / np.sum(share**2, axis=1)
@@ -84,10 +84,22 @@ def lines_together(frfs: FrfSet, fitted: Fitted, density: FloatArray) -> FloatAr
     return np.asarray(np.where(ratio > 1.0 + chance, ratio, 1.0))
 
 
-def _correlation(white: ComplexArray, lag: int) -> FloatArray:
-    """Return the mean product of values ``lag`` lines apart over the FRFs, shape (n_lines - lag,) [-]."""
-    last, parts = white.shape[1] - lag, white.view(np.float64).reshape(*white.shape, 2)
-    return np.asarray(np.einsum("jnc,jnc->n", parts[:, :last], parts[:, lag:]) / len(white))
+def _correlations(white: ComplexArray, most: int) -> list[FloatArray]:
+    """Return the mean products of values up to ``most`` lines apart over the FRFs, each (n_lines - lag,) [-].
+
+    Products of blocks of lines with those after them, as matrix products of which a band is used, take a fifth of the
+    time of one pass over the data for each lag.
+    """
+    count, n = white.shape
+    parts = np.ascontiguousarray(white.T).view(np.float64)
+    found = [np.empty(n - lag) for lag in range(most + 1)]
+    for start in range(0, n, most + 1):
+        own = parts[start : start + most + 1]
+        products = own @ parts[start : start + 2 * most + 1].T / count
+        for lag, values in enumerate(found):
+            band = np.diagonal(products, lag)[: len(own)]
+            values[start : start + len(band)] = band
+    return found
 
 
 def _of_window_shaped_noise(fade: float, lag: int) -> float:

@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,20 @@ WORTH = 1.0
 
 class Stopped(BaseException):
     """Raised in the thread that computes once it is to stop; no error of the data, which nothing may pass over."""
+
+
+@dataclass
+class _Step:
+    """A step that is being computed, with the seconds at which its stages began."""
+
+    name: str
+    began: float
+    stages: list[tuple[str, float]] = field(default_factory=list)
+
+    @property
+    def seconds(self) -> float:
+        """How long it has gone on [s]."""
+        return time.monotonic() - self.began
 
 
 class Doing:
@@ -33,7 +48,7 @@ class Doing:
         """Begin with nothing computed."""
         self._times = times
         self._lock = threading.Lock()
-        self._steps: list[tuple[str, float]] = []
+        self._steps: list[_Step] = []
         self._thread: int | None = None
 
     @contextmanager
@@ -42,13 +57,12 @@ class Doing:
         outermost = not self._steps
         if outermost:
             self._thread = threading.get_ident()
-        began = time.monotonic()
-        self._steps.append((name, began))
+        step = _Step(name, time.monotonic())
+        self._steps.append(step)
         try:
             yield
-            seconds = time.monotonic() - began
-            if seconds > WORTH and self._times is not None:
-                keep(self._times, name, [], seconds)
+            if step.seconds > WORTH and self._times is not None:
+                keep(self._times, name, step.stages, step.seconds)
         finally:
             try:
                 if outermost:
@@ -64,11 +78,18 @@ class Doing:
         steps = list(self._steps)
         if not steps:
             return {"what": "", "seconds": 0.0, "remaining_s": None}
-        name, began = steps[-1]
-        seconds = time.monotonic() - began
-        before = [] if self._times is None else kept(self._times, name)
-        left = remaining([], seconds, before)
-        return {"what": name, "seconds": seconds, "remaining_s": left}
+        step = steps[-1]
+        stages, seconds = list(step.stages), step.seconds
+        before = [] if self._times is None else kept(self._times, step.name)
+        left = remaining(stages, seconds, before)
+        what = f"{step.name}: {stages[-1][0]}" if stages else step.name
+        return {"what": what, "seconds": seconds, "remaining_s": left}
+
+    def stage(self, name: str) -> None:
+        """Name the stage that begins in the innermost step; nothing outside of steps."""
+        if self._steps:
+            step = self._steps[-1]
+            step.stages.append((name, step.seconds))
 
     def stop(self) -> None:
         """Raise `Stopped` in the thread that computes, at its next step in Python; nothing where none computes."""

@@ -1,4 +1,4 @@
-"""The form of an import of text: what is guessed of its columns, and the layout that the corrected form is."""
+"""The form of an import: what is guessed of columns, channels or arrays, and the layout that the corrected form is."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from acquisition.columns.layout import Layout, layout_from
 from acquisition.columns.proposal import propose_layout, source_of
 from acquisition.columns.reasons import reasons_in
 from acquisition.errors import InputError
+from acquisition.recorders import ARRAYS, is_recorded
 
 HITS = ("force", "acceleration", "velocity", "displacement")
 FRFS = ("accelerance", "mobility", "receptance")
@@ -23,6 +24,12 @@ FIRST = 3
 
 TOP = ("rate", "samples", "decay", "skip", "separator", "decimal")
 """Keys of a layout that the form has once."""
+
+MAT_LISTS = ("axes", "responses", "references")
+"""Keys of FRFs in a MATLAB file that are lists; the form has them with commas."""
+
+MAT = ("frfs", "frequency", "axes", "quantity", "unit", "responses", "references")
+"""Keys of FRFs in a MATLAB file that the form has."""
 
 LABELS = {"reference_node": "hit at"}
 """Keys of a column that the form calls otherwise."""
@@ -44,7 +51,8 @@ def proposed_form(paths: Sequence[Path], written: Mapping[str, Any]) -> Form:
     -------
     dict
         ``rows``, one for each column of the first file; the keys of :data:`TOP`; ``match`` and ``match_column``, which
-        take nodes from file names; ``why``, by key of the top; ``named``, whether columns are called by headings.
+        take nodes from file names; ``why``, by key of the top; ``named``, whether columns are called by headings;
+        ``arrays``, whether the file has named arrays, of which one may be the rate; ``mat``, of FRFs in a MATLAB file.
 
     Raises
     ------
@@ -57,19 +65,29 @@ def proposed_form(paths: Sequence[Path], written: Mapping[str, Any]) -> Form:
     try:
         proposal = propose_layout(paths, text=text)
     except InputError as error:
-        if len(source.channels) < 2:
+        if len(source.channels) < 2 and not is_recorded(paths[0]):
             raise InputError(f"{error}; set another separator or decimal sign") from error
         raise
     table, reasons = tomllib.loads(proposal), reasons_in(proposal)
     rule: dict[str, str] = next(iter(table.get("file", [])), {})
+    mat: dict[str, Any] | None = table.get("mat")
+    channels = source.channels if mat is None else ()
     return {
         "named": source.named,
-        "rows": [_row(c, table, reasons, named=source.named) for c in source.channels],
+        "arrays": paths[0].suffix.lower() in ARRAYS,
+        "mat": None if mat is None else {key: _shown(mat.get(key, "")) for key in MAT},
+        "rows": [_row(c, table, reasons, named=source.named) for c in channels],
         **{key: str(table.get(key, "")) for key in TOP},
         "match": rule.get("match", ""),
         "match_column": "",
-        "why": reasons["", 0] | {"match": reasons.get(("file", 0), {}).get("match", "")},
+        "why": reasons["", 0]
+        | {"match": reasons.get(("file", 0), {}).get("match", "")}
+        | reasons.get(("mat", 0), {}),
     }
+
+
+def _shown(value: Any) -> str:
+    return ", ".join(value) if isinstance(value, list) else str(value)
 
 
 def _row(channel: Channel, table: Mapping[str, Any], reasons: Mapping[Any, Any], *, named: bool) -> Form:
@@ -123,8 +141,13 @@ def layout_of(form: Mapping[str, Any]) -> tuple[dict[str, Any], Layout]:
     InputError
         If something in it cannot be read, or belongs to nothing.
     """
-    rows = list(form["rows"])
-    table: dict[str, Any] = {key: _typed(form[key], key) for key in TOP if _is_stated(form, key)}
+    rows, arrays = list(form["rows"]), bool(form.get("arrays"))
+    table: dict[str, Any] = {
+        key: _typed(form[key], key, arrays=arrays) for key in TOP if _is_stated(form, key)
+    }
+    if form.get("mat"):
+        table["mat"] = _mat(form["mat"])
+        return _placed(table, form)
     for role in ("time", "frequency"):
         keys = [row["key"] for row in rows if row["role"] == role]
         if len(keys) > 1:
@@ -137,6 +160,21 @@ def layout_of(form: Mapping[str, Any]) -> tuple[dict[str, Any], Layout]:
     read = [row for row in rows if row["role"] not in ("", "time", "frequency")]
     _check_roles(read, of_frfs=of_frfs)
     table["column"] = [_entry(row, of_frfs=of_frfs) for row in read]
+    return _placed(table, form)
+
+
+def _mat(typed: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the table ``[mat]``; keys left empty are left out."""
+    stated = {key: str(typed.get(key, "")).strip() for key in MAT}
+    return {
+        key: [part.strip() for part in text.split(",") if part.strip()] if key in MAT_LISTS else text
+        for key, text in stated.items()
+        if text
+    }
+
+
+def _placed(table: dict[str, Any], form: Mapping[str, Any]) -> tuple[dict[str, Any], Layout]:
+    """Add where file names state nodes, and read the layout."""
     if pattern := str(form.get("match", "")).strip():
         column = form.get("match_column", "")
         table["file"] = [{"match": pattern, **({} if column == "" else {"column": column})}]
@@ -177,8 +215,11 @@ def _entry(row: Mapping[str, Any], *, of_frfs: bool) -> dict[str, Any]:
     return entry
 
 
-def _typed(value: Any, key: str) -> Any:
-    """Return what was typed for a key of the top as a layout has it; a rate or decay may have its unit."""
+def _typed(value: Any, key: str, *, arrays: bool = False) -> Any:
+    """Return what was typed for a key of the top as a layout has it; a rate or decay may have its unit.
+
+    Of named arrays, the rate may be one of these.
+    """
     text = str(value).strip()
     if key in ("skip", "samples"):
         return _whole(text, key)
@@ -186,7 +227,7 @@ def _typed(value: Any, key: str) -> Any:
         try:
             return _number(text, key)
         except InputError:
-            if not text[:1].isdigit():
+            if not text[:1].isdigit() and not (arrays and key == "rate"):
                 raise
     return text
 

@@ -1,7 +1,8 @@
-"""The import of column text: files chosen, columns guessed and corrected, layout and study written."""
+"""The import of text and of recorder files: files chosen, columns guessed and corrected, layout and study written."""
 
 from __future__ import annotations
 
+import os
 import re
 import threading
 from collections.abc import Mapping, Sequence
@@ -10,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from acquisition import FrfSet, HammerTest, UffContent
-from acquisition.columns import read_columns, read_frf_columns
+from acquisition import FrfSet, HammerTest, UffContent, read_test
 from acquisition.columns.blocks import read_text
 from acquisition.columns.proposal import BEGINS
 from acquisition.errors import InputError
 from acquisition.readers import COLUMNS
+from acquisition.recorders import ARRAYS, ENDINGS, all_arrays, is_recorded, listed
 from modalkit.app.controller import Controller
 from modalkit.app.doing import Doing
 from modalkit.app.import_form import ROLES, layout_of, proposed_form
@@ -23,6 +24,7 @@ from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 from modalkit.app.toml import toml_text
 from modalkit.output.whole import write_text
+from modalkit.workflow.joining import together
 from modalkit.workflow.usable import usable
 
 SHOWN, WIDEST = 14, 160
@@ -31,16 +33,22 @@ SHOWN, WIDEST = 14, 160
 MOST_FILES = 2000
 """Files that are offered at the most [-]."""
 
+DEEPEST = 3
+"""Levels of folders below the one opened whose files are offered [-]."""
+
+IMPORTED = COLUMNS | ENDINGS
+"""Endings of files that an import reads."""
+
 STUDY, LAYOUT = "study.toml", "layout.toml"
 
 
 class Importing:
-    """A folder of column text that is made a test.
+    """A folder of column text or recorder files that is made a test.
 
     Parameters
     ----------
     folder : Path
-        Where the files are, and where layout and study will stand.
+        Where the files are, in it or in folders below it, and where layout and study will stand.
     first : str
         The file it was opened with; "" for the folder.
     why : str
@@ -51,17 +59,17 @@ class Importing:
     Raises
     ------
     InputError
-        If there is no column text in the folder.
+        If there is no such file.
     """
 
     def __init__(self, folder: Path, first: str = "", why: str = "", *, warm: bool = False) -> None:
         """Find the files."""
         self._folder, self._why, self._warm = folder, why, warm
-        self._names = sorted(
-            path.name for path in folder.iterdir() if path.is_file() and path.suffix.lower() in COLUMNS
-        )[:MOST_FILES]
+        self._names = imported_files(folder)
         if not self._names:
-            raise InputError(f"{folder}: no column text in it ({', '.join(sorted(COLUMNS))}) and no {STUDY}")
+            raise InputError(
+                f"{folder}: no column text or recorder file in it ({', '.join(sorted(IMPORTED))}) and no {STUDY}"
+            )
         self._first = first
         self._doing = Doing(None)
         self._lock = threading.Lock()
@@ -69,7 +77,7 @@ class Importing:
 
     def state(self) -> dict[str, Any]:
         """Return what the head of the page shows."""
-        return {"title": "Import of text", "file": self._folder.name, "importing": True, "has_files": True}
+        return {"title": "Import", "file": self._folder.name, "importing": True, "has_files": True}
 
     def page(self) -> dict[str, Any]:
         """Return the files, which of them are proposed, and where layout and study would stand."""
@@ -88,9 +96,11 @@ class Importing:
         """Return the first lines of the files chosen, and the form with its guesses or why there is none."""
         with self._lock, self._doing.step("guessing the columns"):
             paths = self._paths(names)
-            found: dict[str, Any] = {"file": paths[0].name, "lines": [], "form": None, "error": ""}
+            found: dict[str, Any] = {"file": names[0], "lines": [], "form": None, "error": ""}
+            found["recorded"] = is_recorded(paths[0])
             try:
-                found["lines"] = [line[:WIDEST] for line in read_text(paths[0])[:SHOWN]]
+                lines = channels_in(paths[0]) if found["recorded"] else read_text(paths[0])[:SHOWN]
+                found["lines"] = [line[:WIDEST] for line in lines]
                 found["form"] = proposed_form(paths, written)
             except InputError as error:
                 found["error"] = str(error)
@@ -151,9 +161,9 @@ class Importing:
 
     def _read(self, names: Sequence[str], form: Mapping[str, Any]) -> HammerTest | FrfSet:
         paths, (_, layout) = self._paths(names), layout_of(form)
-        if layout.frequency_column is None:
-            return read_columns(paths, layout)
-        return read_frf_columns(paths, layout)
+        found = read_test(paths, layout=layout)
+        tests = [test for test in found if isinstance(test, HammerTest)]
+        return tests[0] if tests else together([test for test in found if isinstance(test, FrfSet)])
 
     def _free(self, name: str) -> str:
         """Return a name that no file in the folder has."""
@@ -171,6 +181,44 @@ class Importing:
         if (self._folder / name).exists():
             raise InputError(f"{name}: is there already and is not replaced; give another name")
         return self._folder / name
+
+
+def imported_files(folder: Path) -> list[str]:
+    """Return the files that an import reads, in a folder and below it, by their paths from there.
+
+    Folders that begin with a dot are passed over, and so are those deeper than three levels.
+    """
+    found: list[str] = []
+    for at, folders, names in os.walk(folder):
+        below = Path(at).relative_to(folder)
+        deep = len(below.parts) >= DEEPEST
+        folders[:] = [] if deep else sorted(name for name in folders if not name.startswith("."))
+        found += [
+            (below / name).as_posix() for name in sorted(names) if Path(name).suffix.lower() in IMPORTED
+        ]
+        if len(found) >= MOST_FILES:
+            break
+    return found[:MOST_FILES]
+
+
+def channels_in(path: Path) -> list[str]:
+    """Return a line for each array or channel of a recorder file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    if path.suffix.lower() in ARRAYS:
+        return [
+            f"{name}: {' x '.join(map(str, values.shape)) or 'one number'}{', complex' * np.iscomplexobj(values)}"
+            for name, values in all_arrays(path).items()
+        ]
+    record = listed(path)[0]
+    return [
+        f"{name}: {record.rates.get(i, 0.0):g} Hz" + (f", {unit}" if (unit := record.units.get(i)) else "")
+        for i, name in enumerate(record.names)
+    ]
 
 
 def alike(names: Sequence[str], first: str = "") -> list[str]:

@@ -293,7 +293,7 @@ def _with(predictor: Predictor, moved: Moved) -> Predictor:
     if strange := sorted(set(factors) - set(known)):
         raise InputError(f"there is no factor {strange[0]}; those that can be moved are {', '.join(known)}")
     if wild := [v for v in factors.values() if not LIMITS[0] <= v <= LIMITS[1]]:
-        raise InputError(f"a factor of {wild[0]:g} is no small change; edit the study")
+        raise InputError(f"a factor of {wild[0]:g} is outside the range of the sliders; edit the study")
 
     def state(own: Predictor) -> State:
         total = departure(own.spec, factors)

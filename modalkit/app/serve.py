@@ -10,9 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from acquisition.errors import InputError
-from acquisition.readers import COLUMNS
 from modalkit.app.controller import Controller
-from modalkit.app.importing import STUDY, Importing
+from modalkit.app.importing import IMPORTED, STUDY, Importing
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 
@@ -27,7 +26,7 @@ def serve(
     browser: bool = True,
     ready: Callable[[str], None] = lambda address: None,
 ) -> None:
-    """Serve a study, a data file or a folder of text until the process is interrupted.
+    """Serve a study, a data file or a folder to import until the process is interrupted.
 
     Parameters
     ----------
@@ -76,7 +75,7 @@ def serve(
 
 
 def subject_of(path: Path, *, layout: Path | None = None) -> Controller | Importing:
-    """Return the study that a path is or begins, or the import of text that lacks a layout.
+    """Return the study that a path is or begins, or the import of files that lack a layout.
 
     Parameters
     ----------
@@ -97,7 +96,7 @@ def subject_of(path: Path, *, layout: Path | None = None) -> Controller | Import
     try:
         opened = open_path(path, layout=layout)
     except InputError as error:
-        if layout is not None or path.suffix.lower() not in COLUMNS or not path.is_file():
+        if layout is not None or path.suffix.lower() not in IMPORTED or not path.is_file():
             raise
         return Importing(path.parent, path.name, str(error), warm=True)
     return Controller(opened, Store.beside(path), warm=True)

@@ -47,6 +47,8 @@ class Workbench:
     def __init__(self, doing: Doing) -> None:
         """Begin with nothing computed."""
 
+        self._stage = doing.stage
+
         def step(name: str) -> Callable[[], AbstractContextManager[None]]:
             return lambda: doing.step(name)
 
@@ -112,7 +114,9 @@ class Workbench:
         test = study.test
         return self._modes.get(
             self._modes_key(study),
-            lambda: processed.identify(band=test.band, order=test.order, add=test.add, drop=test.drop),
+            lambda: processed.identify(
+                band=test.band, order=test.order, add=test.add, drop=test.drop, progress=self._stage
+            ),
         )
 
     def has_modes(self, study: Study) -> bool:

@@ -218,6 +218,6 @@ def _check(store: Path, seed: int | None) -> None:
     )
     if found.in_flight:
         out.print(
-            f"sealed but not opened, for the run ended before: {', '.join(map(str, found.in_flight))}",
+            f"committed but not scored, because the run stopped: {', '.join(map(str, found.in_flight))}",
             markup=False,
         )

@@ -85,7 +85,7 @@ def inspect(
     files: Files,
     decay: Decay = 0.0,
     layout: Layout = None,
-    every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
+    every: Annotated[bool, typer.Option("--all", help="print one row per data set")] = False,
     write_layout: Annotated[
         Path | None,
         typer.Option(

@@ -56,7 +56,7 @@ def print_real(outcomes: Sequence[RealOutcome]) -> None:
     if whole:
         show_table(real_table(whole), "Real structures, their cause withheld")
     if left_out:
-        show_table(real_table(left_out), "The same, the true effects taken out of the library")
+        show_table(real_table(left_out), "The same trials with the true effects removed from the library")
     out.print("How answers are graded:", style="bold")
     out.print(RULES, markup=False)
     out.print(_GAP, markup=False)

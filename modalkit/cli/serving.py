@@ -18,7 +18,10 @@ def add_commands(app: typer.Typer) -> None:
 
 def open_app(
     file: Annotated[
-        Path, typer.Argument(help="study file, a file of hits, FRFs or modes, or a folder of text")
+        Path,
+        typer.Argument(
+            help="study file, a file of hits, FRFs or modes, or a folder of text or recorder files"
+        ),
     ],
     no_browser: Annotated[bool, typer.Option("--no-browser", help="only print the address")] = False,
     port: Annotated[int, typer.Option(min=0, max=65535, help="port on this machine; 0: any free one")] = 0,

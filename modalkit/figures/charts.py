@@ -13,7 +13,7 @@ from acquisition import FrfSet, InputError, ModalData
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import bare_hertz, hertz, percent
-from identification import ModalModel, cmif, pole_origins
+from identification import ModalModel, cmif, mvmif, pole_origins
 from modalkit.figures.chart import chart_figure, sheet_figure
 from modalkit.figures.style import INK, MARGIN, SMALL, WIDTH, broken
 from modalkit.planning import Forecast
@@ -26,7 +26,7 @@ from modalkit.views.charts.gap import gap_chart
 from modalkit.views.charts.matrix import matrix_chart
 from modalkit.views.charts.planning import separations_chart, thresholds_chart
 from modalkit.views.charts.poles import poles_chart, rejected_columns
-from modalkit.views.charts.test import auto_mac_chart, cmif_chart
+from modalkit.views.charts.test import auto_mac_chart, cmif_chart, mvmif_chart
 from modalkit.views.charts.update import Factor, factors_chart
 from modalkit.views.mode_errors import ModeErrors
 from modalkit.workflow.overlaid import Overlaid
@@ -105,6 +105,26 @@ def cmif_figure(frfs: FrfSet, *, band: tuple[float, float] | None = None, count:
         If no response was measured with every reference.
     """
     return chart_figure(cmif_chart(frfs, cmif(frfs, band=band, count=count)))
+
+
+def mvmif_figure(frfs: FrfSet, *, band: tuple[float, float] | None = None, count: int = 4) -> Figure:
+    """Draw the multivariate mode indicator functions.
+
+    Parameters
+    ----------
+    frfs, band, count
+        As of :func:`identification.mvmif`.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        If no response was measured with every reference.
+    """
+    return chart_figure(mvmif_chart(frfs, mvmif(frfs, band=band, count=count)))
 
 
 def stabilisation_figure(

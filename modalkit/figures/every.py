@@ -18,6 +18,7 @@ from modalkit.figures.charts import (
     damping_figure,
     frf_figure,
     mac_figure,
+    mvmif_figure,
     stabilisation_figure,
 )
 from modalkit.figures.diagnosis.figure import diagnosis_figure
@@ -67,7 +68,7 @@ def draw(result: Any, *, folder: Path | str | None = None) -> Drawings:
 
 def _of_frfs(frfs: FrfSet) -> dict[str, Figure]:
     try:
-        return {"frf": frf_figure(frfs), "cmif": cmif_figure(frfs)}
+        return {"frf": frf_figure(frfs), "cmif": cmif_figure(frfs), "mvmif": mvmif_figure(frfs)}
     except InputError:  # no response was measured with every reference
         return {"frf": frf_figure(frfs)}
 

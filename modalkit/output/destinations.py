@@ -117,7 +117,7 @@ def check_outputs(*wanted: tuple[Path | None, Kind], reads: Iterable[Path] = ())
     taken = set()
     for path, kind in given:
         if (which := _identity(path)) in taken:
-            raise InputError(f"{path}: asked for twice, for different results; give each its own file")
+            raise InputError(f"{path}: given for two different results; give each its own file")
         taken.add(which)
         if which in read:
             raise InputError(f"{path}: this command reads it; name another file, as {_free(path, kind)}")

@@ -95,7 +95,7 @@ def _unknown(diagnosis: Diagnosis) -> str:
     if not diagnosis.ranking:
         return nothing
     if diagnosis.mechanisms:
-        return f"the gap is real, and a cause in no library explains it best: {content_text(diagnosis)}"
+        return f"the gap is real; a cause outside the library explains it best: {content_text(diagnosis)}"
     first = " + ".join(diagnosis.ranking[0].effects)
     if diagnosis.lacks in (None, "fit"):
         ends = [f"{name} = {e.bare}" for name, e in diagnosis.ranking[0].parameters.items() if e.at_bound]

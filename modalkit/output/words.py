@@ -55,7 +55,11 @@ def answer(diagnosis: Diagnosis) -> str:
         return f"{gap}, and nothing in the library of effects explains it{content}"
     if diagnosis.verdict == "named":
         where, value = _detail(diagnosis)
-        return f"{_capital(phrase(diagnosis.sets[0]))}{where} explains the gap{value}"
+        *first, last = [phrase([name]) for name in diagnosis.sets[0]]
+        if first:
+            comma = "," * (len(first) > 1)
+            return f"{_capital(', '.join(first))}{comma} and {last} together explain the gap{value}"
+        return f"{_capital(last)}{where} explains the gap{value}"
     named = [phrase(names) for names in diagnosis.sets]
     if len(named) > 4:
         named = [*named[:3], f"{len(named) - 3} others"]

@@ -198,7 +198,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         marked.append(False)
     statement = {
         "named": "The shaded row is the answer.",
-        "class": "The shaded rows are the answer: one of them, these data cannot show which.",
+        "class": "The shaded rows are the answer: one of them explains the gap; these data cannot show which.",
         "unknown": "None of them is the answer.",
         "none": "The shaded row is the answer: no cause is needed.",
     }[diagnosis.verdict]
@@ -294,7 +294,9 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
             )
         )
     if shrink.closed is not None and shrink.closed.determined and diagnosis.verdict in {"named", "class"}:
-        parts.append(element("p", f"Of what can be closed, {shrink.closed} closes, with 95 % in brackets."))
+        parts.append(
+            element("p", f"Of the reducible gap, {shrink.closed} closes (95 % interval in brackets).")
+        )
     return joined(*parts)
 
 
@@ -302,7 +304,7 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
     """Return what the best explanation leaves beyond noise, and which data carry it."""
     left = diagnosis.remainder
     if left is None:
-        return element("p", "There is no gap, so nothing is left of one.")
+        return element("p", "There is no gap, so there is no remainder.")
     whose = short(diagnosis.ranking[0].effects) if diagnosis.ranking else "the tolerances"
     if not left.significant:
         worst = (
@@ -314,7 +316,7 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
         return joined(nothing, *_of_no_library(diagnosis))
     statement = (
         f"{whose} leaves {percent(left.percent)} beyond noise, {left.sigma:.0f} standard deviations where it is "
-        "largest. Something else is there, or something was measured worse than stated. It is carried by:"
+        "largest. Either another cause is present, or some data are worse than stated. Data that show it:"
     )
     carried = bullets(list(left.carried_by) or ["all data together"])
     return joined(element("p", statement), carried, *_of_no_library(diagnosis))

@@ -17,7 +17,14 @@ from modalkit.views.chart import Chart
 from modalkit.views.charts.damping import ExpectedDamping, damping_chart, expected_damping
 from modalkit.views.charts.matrix import matrix_chart
 from modalkit.views.charts.poles import poles_chart
-from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, thin_cmif
+from modalkit.views.charts.test import (
+    auto_mac_chart,
+    cmif_chart,
+    frfs_chart,
+    hits_chart,
+    mvmif_chart,
+    thin_indicators,
+)
 from modalkit.views.shapes import Beside, Changed, shapes_page
 from modalkit.workflow.case import Session, modes_in_band
 from modalkit.workflow.processed import Processed
@@ -108,8 +115,9 @@ def sections_of_test(
             frfs_chart(identified, f"frf{mark}", tests=tests),
             poles_chart(identified, origins, f"poles{mark}"),
         ]
-        if (table := thin_cmif(identified.frfs)) is not None:
-            fit.append(cmif_chart(identified.frfs, table, f"cmif{mark}"))
+        if (tables := thin_indicators(identified.frfs)) is not None:
+            fit.append(cmif_chart(identified.frfs, tables[0], f"cmif{mark}"))
+            fit.append(mvmif_chart(identified.frfs, tables[1], f"mvmif{mark}"))
         sections.append(Section(f"FRFs and poles{whose}", fit))
     if modal is not None:
         sections.append(

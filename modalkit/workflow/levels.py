@@ -11,6 +11,7 @@ import numpy as np
 from acquisition import EstimationError, FrfSet, HammerTest, HitVerdict, Windows
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.quantities import hertz
+from modalkit.workflow.frf_checks import NAMED
 
 if TYPE_CHECKING:
     from identification import Growth, LevelDependence, ModalModel
@@ -225,11 +226,12 @@ def _with_coincidences(model: ModalModel) -> ModalModel:
     found = coincidences(model)
     if not found:
         return model
-    named = ", ".join(f"{hertz(model.modal.frequency[i])} ({of})" for i, of in found.items())
+    named = [f"{hertz(model.modal.frequency[i])} ({of})" for i, of in found.items()]
+    rest = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
     statement = (
-        f"{len(found)} of {len(model)} modes lie at sums or differences of stronger ones: {named}. They may be "
-        "products that a joint makes as it slips or closes. Hit softly and hard, and give the raw hits: constants of "
-        "products grow with the force"
+        f"{len(found)} of {len(model)} modes lie at sums or differences of stronger modes: {', '.join(named[:NAMED])}"
+        f"{rest}. They may be products of a joint that slips or closes. To find out, hit softly and hard and give the "
+        "raw hits: the constants of products grow with the force"
     )
     return replace(model, warnings=(*model.warnings, statement))
 
@@ -246,7 +248,7 @@ def _statement(model: ModalModel, found: LevelDependence, smeared: bool) -> str:
     what = (
         f"hits are brought to one level of {found.level:.3g} N, by what each mode does at the level of each"
         if smeared
-        else "one mode at two levels may pass for two: take modes that lie close together with unlike shapes with care"
+        else "one mode at two levels may look like two: treat close modes with different shapes with care"
     )
     return (
         f"frequencies follow the force of the hits, from {found.weakest:.3g} to {found.strongest:.3g} N: {named}. A "

@@ -61,7 +61,7 @@ REFUSED = {
         '[update]\nparameters = ["WEB.colour"]\n',
         "WEB.colour: a region has no 'colour' to update",
     ),
-    "thickness": ('[update]\nparameters = ["WEB.thickness"]\n', "it has no thickness to turn"),
+    "thickness": ('[update]\nparameters = ["WEB.thickness"]\n', "it has no thickness to change"),
     "frf": (
         '[update]\nmethod = "frf"\nparameters = ["WEBFACE.y"]\n',
         "WEBFACE.y is a number of a deck, which only",

@@ -39,7 +39,7 @@ def test_a_diagnosis_shows_itself_with_and_without_its_study() -> None:
 def test_modes_show_and_move() -> None:
     model = model_of(12)
     charts = {c["name"] for c in data_of(model.show().page)["charts"]}
-    assert charts == {"damping", "frf", "poles", "cmif", "auto-mac"}
+    assert charts == {"damping", "frf", "poles", "cmif", "mvmif", "auto-mac"}
     moving = data_of(model.animate().page)["space"]["shapes"]["page"]
     assert len(moving["modes"]) == len(model)
     assert data_of(model.modal.animate().page)["space"]["shapes"]["page"] == moving

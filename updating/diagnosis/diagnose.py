@@ -161,7 +161,7 @@ def searched_together(
         raise InputError(f"--shared {unknown[0]}: there is no such effect; `modalkit effects` lists them")
     titles = tuple(case.title for case in cases)
     if len(set(titles)) < len(titles):
-        raise InputError(f"two studies are titled alike ({', '.join(titles)}); give each its own title")
+        raise InputError(f"two studies have the same title ({', '.join(titles)}); give each its own title")
     steps.begin("pairing the modes")
     problems = [pose(case) for case in cases]
     several = Several(tuple(problem for problem, _ in problems), titles, frozenset(shared))

@@ -56,7 +56,7 @@ def _wrong(parameter: Parameter, value: float) -> str | None:
     """Return what is wrong with a value, or None."""
     name = parameter.name
     if not abs(value) <= FAR * max(abs(parameter.low), abs(parameter.high)):
-        return f"is over a million times beyond what is ever found, {parameter.low:g} to {parameter.high:g}"
+        return f"is more than a million times outside the plausible range, {parameter.low:g} to {parameter.high:g}"
     if name in PLACES:
         slack = ROUNDED * (parameter.high - parameter.low)
         if not parameter.low - slack <= value <= parameter.high + slack:
@@ -64,7 +64,7 @@ def _wrong(parameter: Parameter, value: float) -> str | None:
     elif name in WITHIN and not parameter.low <= value <= parameter.high:
         return f"must lie from {parameter.low:g} to {parameter.high:g}"
     elif name == "loss" and value >= WHOLE_LOSS:
-        return "takes away all stiffness or more; it is a share below 1"
+        return "removes all stiffness; give a share below 1"
     elif (
         parameter.log
         and not parameter.signed

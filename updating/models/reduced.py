@@ -135,7 +135,7 @@ class Reduced:
     def fielded(self) -> FieldStructure:
         """The structure, where it has fields; else as :attr:`fields`."""
         if not isinstance(self.structure, FieldStructure):
-            raise StudyError("imported matrices have no fields: nothing can change at a place inside them")
+            raise StudyError("imported matrices have no fields: no place inside them can be changed")
         return self.structure
 
     @cached_property

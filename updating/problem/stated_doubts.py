@@ -70,5 +70,5 @@ def of_updates_alone(tolerances: Tolerances, spec: Spec) -> tuple[str, ...]:
     if not others:
         return ()
     return (
-        f"doubts in {', '.join(others)} are for updates; a diagnosis uses only those of region properties",
+        f"tolerances of {', '.join(others)} count in updates only; a diagnosis uses those of region properties",
     )

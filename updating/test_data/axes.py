@@ -35,7 +35,7 @@ class Axes:
     def __post_init__(self) -> None:
         lengths = math.hypot(*self.x), math.hypot(*self.y)
         if min(lengths) == 0:
-            raise StudyError(f"axes: x = {list(self.x)} or y = {list(self.y)} points nowhere")
+            raise StudyError(f"axes: x = {list(self.x)} or y = {list(self.y)} has no direction")
         cosine = sum(a / lengths[0] * (b / lengths[1]) for a, b in zip(self.x, self.y, strict=True))
         if not abs(cosine) <= 1e-3:
             raise StudyError(f"axes: x = {list(self.x)} and y = {list(self.y)} are not perpendicular")

@@ -143,7 +143,7 @@ def redrawn(frfs: MeasuredFrfs, identified: ModalModel, measured: Measured, draw
     first = int(np.argmin(np.abs(drawn.frequency - identified.frfs.frequency[0])))
     last = first + len(identified.frfs.frequency)
     if not set(own) <= set(names) or last > len(drawn.frequency) or drawn.form != identified.frfs.form:
-        raise StudyError(f"{drawn.source}: the FRFs drawn anew are not those that were identified")
+        raise StudyError(f"{drawn.source}: the FRFs of this draw are not those that were identified")
     kept, fine, turned = _to_model(identified, measured)
     rows = [names[pair] for pair in own]
     values = drawn.values[rows][:, first:last][kept]

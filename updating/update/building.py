@@ -99,8 +99,8 @@ def _without_updated(case: Case, parameter_set: ParameterSet, predictor: Predict
     names = [name for name, _ in case.accepted]
     if twice := sorted(name for name in updated if names.count(name) > 1):
         raise StudyError(
-            f"update: {twice[0]} stands {names.count(twice[0])} times in [[model.effect]], and it is not "
-            "clear which is meant; keep one"
+            f"update: {twice[0]} is given {names.count(twice[0])} times in [[model.effect]], so that the name "
+            "does not state which is meant; keep one"
         )
     if not updated & set(names):
         return predictor

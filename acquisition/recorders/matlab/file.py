@@ -151,8 +151,8 @@ def _matrix(whole: Bytes) -> Bytes:
 
 def _too_large(raw: Bytes) -> InputError:
     return InputError(
-        f"{raw.where}: {len(raw.data)} bytes that unpack to more than {allowed(len(raw.data))}; save what is needed "
-        "alone, or with '-v6', which does not pack"
+        f"{raw.where}: {len(raw.data)} bytes that decompress to more than {allowed(len(raw.data))}; save what is "
+        "needed alone, or with '-v6', which does not compress"
     )
 
 
@@ -173,7 +173,7 @@ def _field(array: Array, name: str) -> Array:
     path = name.split(".")[1:]
     if len(path) > DEEP:
         raise InputError(
-            f"{array.body.where}: {name!r} names {len(path)} fields in one another; {DEEP} at the most"
+            f"{array.body.where}: {name!r} is nested {len(path)} fields deep; at most {DEEP} are read"
         )
     for part in path:
         if array.kind != STRUCTURE:

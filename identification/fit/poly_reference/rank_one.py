@@ -8,6 +8,7 @@ Poles beyond the band stand for many modes each, so their residues stay free.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,6 +63,7 @@ def hold_to_rank_one(
     modes: BoolArray,
     *,
     inflation: float = 1.0,
+    watch: Callable[[ComplexArray], None] = lambda poles: None,
 ) -> RankOne:
     """Refine poles and participations together, shapes and residual terms projected out.
 
@@ -83,6 +85,8 @@ def hold_to_rank_one(
         Which poles are modes; at least one.
     inflation : float
         Factor by which noise that fades over the record exceeds what the weights imply [-].
+    watch : function, optional
+        Called with the poles after every step from which on the data bear it; what it raises ends the refinement.
 
     Returns
     -------
@@ -94,16 +98,25 @@ def hold_to_rank_one(
     free = np.arange(places.shape[1])[:, None] != lead[None, :]
     problem = Problem(frfs, weights, fit.linear.powers, places, free)
     share = untangled(problem, fit.poles[front], share)
-    poles, share, step, converged = _iterate(problem, fit.poles[front], share, frfs.decay)
     freed = 2 * share.shape[1] * (len(frfs.values) - places.shape[0] - places.shape[1] + 1)
     limit = float(stats.chi2.isf(_CHANCE, freed)) * inflation
+
+    def watched(poles: ComplexArray, cost: float) -> None:
+        if 2.0 * (cost - fit.cost) <= limit:  # the data bear it from here on, since steps lower the misfit
+            watch(poles)
+
+    poles, share, step, converged = _iterate(problem, fit.poles[front], share, frfs.decay, watched)
     excess = 2.0 * (step.cost - fit.cost) / limit
     there = fit_at(frfs, poles, weights, fit.linear.powers, fit.converged and converged)
     return _result(problem, there, (poles, share, step), excess)
 
 
 def _iterate(
-    problem: Problem, poles: ComplexArray, share: ComplexArray, decay: float
+    problem: Problem,
+    poles: ComplexArray,
+    share: ComplexArray,
+    decay: float,
+    watch: Callable[[ComplexArray, float], None],
 ) -> tuple[ComplexArray, ComplexArray, Step, bool]:
     state, damping, n = evaluate(problem, poles, share), 1e-3, len(poles)
     for _ in range(_ITERATIONS):
@@ -120,6 +133,7 @@ def _iterate(
             if damping > _STUCK or promised < _CONVERGED:
                 return poles, share, state, True
             continue
+        watch(trial_poles, trial.cost)
         gain = state.cost - trial.cost
         poles, share, state, damping = trial_poles, trial_share, trial, max(0.1 * damping, 1e-12)
         if gain < _CONVERGED:

@@ -43,7 +43,7 @@ def nearest_modes(poles: ComplexArray, hertz: Sequence[float], candidates: BoolA
         best = int(distance.argmin())
         if not distance[best] <= max(_NEAR * value, 3 * df):  # nan is near nothing
             found = ", ".join(f"{f:.5g}" for f in frequency[candidates])
-            raise InputError(f"no mode near {value:g} Hz to leave out; those found are at {found} Hz")
+            raise InputError(f"no mode near {value:g} Hz; those found are at {found} Hz")
         meant[best] = True
     return meant
 
@@ -73,11 +73,39 @@ def must_have_stayed(
     """
     new = int(np.abs(poles[:, None] - before[None, :]).min(axis=1).argmax()) if len(before) else 0
     off = abs(np.abs(poles[new]) / (2 * np.pi) - hertz)
-    if modes[new] and off <= max(_NEAR * hertz, 3 * df):
-        return
-    raise InputError(
-        f"no mode can be kept at {hertz:g} Hz: fitted to these FRFs, its pole leaves for another frequency or turns "
-        "into a background; narrow the band about it, or do without"
+    if not modes[new] or off > max(_NEAR * hertz, 3 * df):
+        raise InputError(_left(hertz))
+
+
+def must_have_a_mode(poles: ComplexArray, modes: BoolArray, add: Sequence[float], df: float) -> None:
+    """Refuse a mode asked for that is not there once modes are held to one shape each.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles of the fit [rad/s].
+    modes : (n_modes,) bool array
+        Which poles are modes of the band.
+    add : sequence of float
+        Where modes were asked for [Hz].
+    df : float
+        Line spacing [Hz].
+
+    Raises
+    ------
+    InputError
+        If no mode is within 1 % or three lines of one of them.
+    """
+    found = np.abs(poles[modes]) / (2 * np.pi)
+    for hertz in add:
+        if not np.any(np.abs(found - hertz) <= max(_NEAR * hertz, 3 * df)):
+            raise InputError(_left(hertz))
+
+
+def _left(hertz: float) -> str:
+    return (
+        f"no mode can be kept at {hertz:g} Hz: in the fit, its pole moves to another frequency or becomes part of the "
+        "background; narrow the band about it, or leave it out"
     )
 
 

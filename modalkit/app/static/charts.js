@@ -125,7 +125,6 @@ function layout(given) {
 
 const OPTIONS = {
   displaylogo: false,
-  responsive: true,
   modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
   showSendToCloud: false, // nothing is uploaded to anybody
   plotlyServerURL: "",
@@ -137,8 +136,17 @@ export async function draw(element, traces, given = {}) {
   const library = await plotly();
   if (!element.isConnected) return;
   element.classList.add("chart");
-  await library.react(element, traces, layout(given), OPTIONS);
+  await library.react(element, traces, { ...layout(given), width: element.clientWidth || undefined }, OPTIONS);
+  if (observed.has(element)) return;
+  observed.add(element);
+  const fitted = () => {
+    const wide = element.clientWidth; // 0 while the panel is hidden
+    if (wide && element.layout && element.layout.width !== wide) library.relayout(element, { width: wide });
+  };
+  new ResizeObserver(fitted).observe(element); // plotly's own follows the window alone, and gives up the height
 }
+
+const observed = new WeakSet();
 
 /** Call back with the place and the trace of what is clicked in a chart. */
 export async function onclick(element, call) {

@@ -86,7 +86,7 @@ def confusion_figure(answers: pd.DataFrame) -> Figure:
         raise InputError("the blind run has no trials to draw; run at least one")
     counts = gathered(answers)
     right, total = answers.loc[answers["true"].astype(bool), "share"].sum(), answers["share"].sum()
-    title = f"{right:.0f} of {total:.0f} blind trials answered truly, a class counted by its share"
+    title = f"{right:.0f} of {total:.0f} blind trials answered correctly, a class counted by its share"
     note = (
         "A row is what was hidden, a column what was answered; dark is most of the row, green frames are true answers. "
         "A class gives each of its sets an equal part of the trial. Faint effects are among them: there, none is the "

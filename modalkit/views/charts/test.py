@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,7 @@ from acquisition import FrfSet, HitVerdict, InputError, ModalData
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from acquisition.quantities import hertz, percent
-from identification import ModalModel, auto_mac, cmif
+from identification import ModalModel, auto_mac, cmif, mvmif
 from modalkit.views.chart import Axis, Chart, Choices, Series
 from modalkit.views.charts.frf import Curve, frf_names, magnitude
 from modalkit.views.charts.frfs import ends
@@ -77,13 +77,14 @@ def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart
     )
 
 
-def thin_cmif(frfs: FrfSet) -> pd.DataFrame | None:
-    """Return the mode indicator functions on common lines; None where no response was measured with every reference."""
+def thin_indicators(frfs: FrfSet) -> tuple[pd.DataFrame, pd.DataFrame] | None:
+    """Return CMIF and MvMIF on common lines; None where no response was measured with every reference."""
     try:
-        table = cmif(frfs)
+        tables = cmif(frfs), mvmif(frfs)
     except InputError:
         return None
-    return table.iloc[common_lines(frfs, 40)[0]]
+    kept = common_lines(frfs, 40)[0]
+    return tables[0].iloc[kept], tables[1].iloc[kept]
 
 
 def cmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "cmif") -> Chart:
@@ -98,31 +99,62 @@ def cmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "cmif") -> Chart:
     name : str
         Of the chart.
     """
+    what = (
+        "A peak is a mode; with one reference or response two close modes show as one."
+        if table.shape[1] == 1
+        else "A peak of the first is a mode; one of the second at the same place is another mode beside it."
+    )
+    return _indicator_chart(
+        frfs, table, (name, "CMIF", what), Axis(f"CMIF [({frfs.unit})²]", log=True), _positive
+    )
+
+
+def mvmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "mvmif") -> Chart:
+    """Return the multivariate mode indicator functions of FRFs.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    table : pandas.DataFrame
+        As of :func:`identification.mvmif`.
+    name : str
+        Of the chart.
+    """
+    what = (
+        "A minimum is a mode; with one reference or response two close modes show as one."
+        if table.shape[1] == 1
+        else "A minimum of the first is a mode; one of the second at the same place is another mode beside it."
+    )
+    return _indicator_chart(
+        frfs, table, (name, "MvMIF", what), Axis("MvMIF [-]", range=(0.0, 1.05)), np.asarray
+    )
+
+
+def _indicator_chart(
+    frfs: FrfSet,
+    table: pd.DataFrame,
+    named: tuple[str, str, str],
+    axis: Axis,
+    shown: Callable[[FloatArray], FloatArray],
+) -> Chart:
+    """Return mode indicator functions over the lines; ``named`` are the chart, its word and its text."""
+    name, word, what = named
     table = table[table.index > 0]
     shades = ("ink", "orange", "blue", "muted")
+    lines = table.index.to_numpy(float)
     series = [
-        Series(
-            f"CMIF {k}",
-            "line",
-            table.index.to_numpy(float),
-            _positive(table[k].to_numpy(float)),
-            colour,
-        )
+        Series(f"{word} {k}", "line", lines, shown(table[k].to_numpy(float)), colour)
         for k, colour in zip(table.columns, shades, strict=False)
     ]
     count = min(table.shape[1], len(shades))
-    what = (
-        "A peak is a mode; with one reference or response two close modes show as one."
-        if count == 1
-        else "A peak of the first is a mode; one of the second at the same place is another mode beside it."
-    )
     left = table.attrs["left_out"]
     return Chart(
         name,
-        f"{counted(count, 'mode indicator function')} of {counted(len(frfs.responses), 'FRF')}",
+        f"{word}: {counted(count, 'mode indicator function')} of {counted(len(frfs.responses), 'FRF')}",
         what + (f" Left out, as FRFs lack: {', '.join(left)}." if left else ""),
-        Axis("frequency [Hz]", range=(float(table.index[0]), float(table.index[-1]))),
-        Axis(f"CMIF [({frfs.unit})²]", log=True),
+        Axis("frequency [Hz]", range=(float(lines[0]), float(lines[-1]))),
+        axis,
         series,
         240.0,
     )

@@ -303,7 +303,7 @@ def test_segments_of_an_lvm_file_are_hits(tmp_path):
     with pytest.raises(InputError, match=r"a\.lvm, line 27: 3 samples announced and 2 there"):
         read_columns(path, layout)
     path.write_text("\n".join(LVM.splitlines()[:9]))
-    with pytest.raises(InputError, match="headers do not end"):
+    with pytest.raises(InputError, match="headers begin with Channels"):
         read_columns(path, layout)
     path.write_text(LVM)
     with pytest.raises(InputError, match="1000 Hz by its header, at 2000 Hz by"):
@@ -313,10 +313,10 @@ def test_segments_of_an_lvm_file_are_hits(tmp_path):
 JOINED = "C".join(LVM.replace("***End_of_Header***\n", "", 1).rsplit("Channels", 1))
 """The first segment's header without its end, the second's without its beginning."""
 LVM_DAMAGE = [
-    (LVM.replace("***End_of_Header***\nX_Value", "***End_of_He\nX_Value", 1), "the headers do not end"),
+    (LVM.replace("***End_of_Header***\nX_Value", "***End_of_He\nX_Value", 1), "headers begin with Channels"),
     (LVM.replace("Y_Unit_Label\tg\tNewtons\n", "", 1), "'Y_Unit_Label"),
     (LVM.replace("0,002\t1,25\t4,5\n", "0,002\t1,25\t4,5\n" * 2), "3 samples announced and 4 there"),
-    (LVM.replace("0,001\t1,5\t3,5", "0,\t01\t1,5\t3,5"), "stands beyond the 3 columns"),
+    (LVM.replace("0,001\t1,5\t3,5", "0,\t01\t1,5\t3,5"), "outside the 3 columns"),
     (LVM.replace("Decimal_Separator\t,\n", ""), "a header cannot be read"),
     (LVM[: LVM.index("***End")] + "***End_of_" + LVM[LVM.index("Delta_X") :], "before the first segment"),
     (JOINED, "stands in the header that begins at line"),

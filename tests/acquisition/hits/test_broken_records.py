@@ -123,7 +123,7 @@ def test_records_of_a_few_samples_are_too_short(rng, samples):
     )
     verdicts = judge_hits(short)
     assert not holds_several_hits(short) and not any(v.used for v in verdicts)
-    with pytest.raises(EstimationError, match=r"no usable hit.*6 of 6 refused for: too short"):
+    with pytest.raises(EstimationError, match=r"no usable hit.*most frequent reason, 6 of 6 hits: too short"):
         estimate_frfs(short, verdicts=verdicts)
 
 

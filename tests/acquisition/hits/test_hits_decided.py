@@ -50,7 +50,7 @@ def test_agreeing_with_the_proposal_changes_only_what_is_said():
     [
         ([("12+Z", 3)], [], r"no hit 3 at 12\+Z; hits there: 1 to 2"),
         ([], [("99+Z", 1)], r"no hit 1 at 99\+Z; points hit are 12\+Z, 3-X"),
-        ([("12+Z", 2)], [(Dof(12, 3), 2)], "both to use and to leave out"),
+        ([("12+Z", 2)], [(Dof(12, 3), 2)], "under both use and leave"),
     ],
 )
 def test_hits_that_do_not_exist_are_named(use, leave, message):

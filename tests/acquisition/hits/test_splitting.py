@@ -108,7 +108,7 @@ def test_what_cannot_be_split_says_why(rng):
     test, _ = long_test(rng, TIMES)
     with pytest.raises(InputError, match="reaches the trigger of 10000 N"):
         split_hits(test, trigger=1e4)
-    with pytest.raises(InputError, match=r"the 5 s of a record to itself.*one hit at a time"):
+    with pytest.raises(InputError, match=r"followed by 5 s without.*one hit at a time"):
         split_hits(test, duration=5.0)
     with pytest.raises(InputError, match=r"records of 50 s do not fit into the 14 s recorded"):
         split_hits(test, duration=50.0)

@@ -213,7 +213,7 @@ def test_a_bomb_takes_no_more_than_its_share(tmp_path: Path) -> None:
     path = saved(tmp_path, fn=np.zeros(20_000_000), other=np.zeros(20_000_000))
     assert path.stat().st_size < 1_000_000
     tracemalloc.start()
-    with pytest.raises(InputError, match="unpack to more than"):
+    with pytest.raises(InputError, match="decompress to more than"):
         read_mat(path, layout({"frequency": "fn"}))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()

@@ -6,10 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from identification_cases import ABOVE_DAMPING, ABOVE_HZ, BENCH_DAMPING, BENCH_HZ, lines, structure
+from identification_cases import (
+    ABOVE_DAMPING,
+    ABOVE_HZ,
+    BENCH_DAMPING,
+    BENCH_HZ,
+    column,
+    lines,
+    structure,
+)
 
+from acquisition.errors import InputError
 from identification import identify, mac
-from identification.fit.poly_reference import sorted_frfs
+from identification.fit.poly_reference import hold_to_rank_one, sorted_frfs
+from identification.identify import prepare
 
 REFERENCES = (4, 9, 17)
 
@@ -126,3 +136,21 @@ def test_references_that_disagree_on_the_shape_are_left_free():
     assert any("references do not agree" in w for w in model.warnings)
     exact = np.array([one.shapes[i - 1] * one.shapes[3] for i in range(1, 13)])
     np.testing.assert_allclose(model.constants[:12].real, exact, atol=0.02)
+
+
+def test_what_watches_the_poles_can_end_the_refinement():
+    found = structure((60.0, 110.0, 170.0), (0.01, 0.008, 0.006), 6, seed=31)
+    pairs = column(6, 1) + column(6, 4)
+    frfs = found.frfs(lines(high=250.0), pairs, noise=0.01, rng=np.random.default_rng(3))
+    fitted = prepare(frfs).fitted
+    places, modes = sorted_frfs(fitted.frfs), np.ones(len(fitted.fit.poles), dtype=bool)
+    moved = replace(fitted.fit, poles=fitted.fit.poles * 1.0002)
+    seen = []
+    held = hold_to_rank_one(fitted.frfs, moved, fitted.weights, places, modes, watch=seen.append)
+    np.testing.assert_array_equal(np.sort(seen[-1].imag), np.sort(held.fit.poles.imag))
+
+    def refuse(poles):
+        raise InputError("left")
+
+    with pytest.raises(InputError, match="left"):
+        hold_to_rank_one(fitted.frfs, moved, fitted.weights, places, modes, watch=refuse)

@@ -273,6 +273,14 @@ def test_axe_has_nothing_grave_to_say(browser, shown, width, scheme):
     assert page.foreign == []
 
 
+def test_axe_has_nothing_grave_to_say_of_a_file_without_a_model(browser, serve, faint):
+    page = Page(browser, serve(faint), viewport={"width": 1400, "height": 900}, bypass_csp=True)
+    for where in ("hits", "modes", "shapes", "model", "update", "diagnosis"):
+        page.open(where)
+        assert grave_findings(page.tab) == [], where
+    assert page.foreign == []
+
+
 def test_the_keyboard_reaches_hits_and_poles(browser, shown):
     page = Page(browser, shown)
     page.open("hits")

@@ -105,9 +105,19 @@ def points_of(tab: Any) -> dict[int, tuple[float, float]]:
     return found
 
 
+WIDER = """[...document.querySelectorAll(".js-plotly-plot")]
+  .map((e) => [e.querySelector("svg.main-svg").getBoundingClientRect().width, e.clientWidth])
+  .filter(([drawn, wide]) => Math.abs(drawn - wide) > 1)"""
+"""Charts that are not as wide as their place."""
+
+HEIGHTS = """[...document.querySelectorAll(".js-plotly-plot")]
+  .map((e) => e.querySelector("svg.main-svg").getBoundingClientRect().height)"""
+"""Heights of the charts [px]."""
+
+
 def test_pages_fill_as_results_come(browser, serve, beam):
     """FRFs before the poles, single causes before the answer."""
-    page = Page(browser, serve(beam), viewport={"width": 390, "height": 850})
+    page = Page(browser, serve(beam), viewport={"width": 1400, "height": 850})
     tab = page.tab
     held: list[Any] = []
 
@@ -124,6 +134,17 @@ def test_pages_fill_as_results_come(browser, serve, beam):
     page.settle()
     assert tab.locator("#readout").inner_text() == ""
     tab.unroute("**/api/modes")
+    assert (
+        tab.locator(".page-modes .js-plotly-plot").count() == 3
+    )  # the third beside the second, which got narrower
+    tab.wait_for_timeout(500)
+    assert tab.evaluate(WIDER) == []
+    heights = tab.evaluate(HEIGHTS)
+    assert min(heights) > 200
+    tab.set_viewport_size({"width": 900, "height": 700})
+    tab.wait_for_timeout(1000)
+    assert tab.evaluate(WIDER) == []
+    assert tab.evaluate(HEIGHTS) == heights
     page.open("diagnosis")
     tab.locator("#start-diagnose").click()
     tab.locator("#so-far tbody tr").nth(3).wait_for()

@@ -10,7 +10,7 @@ import pytest
 
 from modalkit.app.doing import Doing, Stopped
 from modalkit.app.kept import Kept
-from modalkit.app.times import keep
+from modalkit.app.times import keep, kept
 
 
 def test_the_innermost_step_is_stated_with_its_time(tmp_path: Path) -> None:
@@ -26,6 +26,24 @@ def test_the_innermost_step_is_stated_with_its_time(tmp_path: Path) -> None:
     assert found["what"] == "identifying"
     assert found["remaining_s"] == pytest.approx(20.0, abs=1.0)
     assert doing.document()["what"] == ""
+
+
+def test_stages_are_stated_and_kept_for_the_next_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    times = tmp_path / "times.json"
+    keep(times, "identifying", [("poles", 0.0), ("fit", 5.0)], 20.0)
+    clock = iter(range(0, 1000, 2))
+    monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
+    doing = Doing(times)
+    doing.stage("poles")
+    assert doing.document()["what"] == ""
+    with doing.step("identifying"):
+        doing.stage("poles")
+        assert doing.document() == {"what": "identifying: poles", "seconds": 4.0, "remaining_s": 3.0 + 15.0}
+        doing.stage("fit")
+        assert doing.document()["what"] == "identifying: fit"
+    assert [name for name, _ in kept(times, "identifying")] == ["poles", "fit", "done"]
 
 
 def endless() -> int:

@@ -6,11 +6,15 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
+from nptdms import ChannelObject, TdmsWriter
+from scipy.io import savemat
 from starlette.testclient import TestClient
-from text_hits import hits
+from text_hits import RATE, TIME, hits
 
+from acquisition.arrays import FloatArray
 from acquisition.columns.proposal import propose_layout
 from acquisition.columns.reasons import reasons_in
 from acquisition.errors import InputError
@@ -182,6 +186,88 @@ def test_a_folder_becomes_a_study_that_the_server_goes_on_with(tmp_path: Path) -
     study.close()
 
 
+def test_files_of_several_folders_are_one_test_and_the_folder_states_the_point(tmp_path: Path) -> None:
+    flat = tmp_path / "flat"
+    flat.mkdir()
+    for name in hits(flat):
+        node, hit = name[1], name[3]
+        (tmp_path / "test" / f"P{node}").mkdir(parents=True, exist_ok=True)
+        (flat / name).rename(tmp_path / "test" / f"P{node}" / f"hit{hit}.csv")
+    (tmp_path / ".hidden").mkdir()
+    (tmp_path / ".hidden" / "P1_1.csv").write_text("1")
+    importing = Importing(tmp_path)
+    names = importing.page()["chosen"]
+    assert names == [f"test/P{node}/hit{hit}.csv" for node in (1, 2) for hit in (1, 2)]
+    assert importing.page()["files"] == names
+    form = importing.proposed(names, {})["form"]
+    assert form["match"] == "P{node}/hit*.csv"
+    assert [row[:2] for row in importing.checked(names, form)["table"]] == [["1+Z", 2], ["2+Z", 2]]
+    importing.write(names, form, title="", layout="layout.toml", study="study.toml")
+    assert importing.controller is not None
+    assert [hit["point"] for hit in importing.controller.hits()["hits"]] == ["1+Z", "1+Z", "2+Z", "2+Z"]
+    importing.close()
+
+
+def _npz(folder: Path, force: FloatArray, motion: FloatArray) -> None:
+    np.savez(folder / "P1.npz", fs=RATE, force=force, acc=motion)
+
+
+def _mat(folder: Path, force: FloatArray, motion: FloatArray) -> None:
+    savemat(folder / "P1.mat", {"fs": RATE, "force": force, "acc": motion})
+
+
+def _hdf5(folder: Path, force: FloatArray, motion: FloatArray) -> None:
+    with h5py.File(folder / "P1.h5", "w") as file:
+        file["fs"], file["force"], file["acc"] = RATE, force, motion
+
+
+def _tdms(folder: Path, force: FloatArray, motion: FloatArray) -> None:
+    with TdmsWriter(folder / "P1.tdms") as file:
+        for hit in range(len(force)):
+            named = (("force", force[hit], "N"), ("acc", motion[hit], "m/s2"))
+            told = [
+                ChannelObject(f"hit {hit}", name, values, {"wf_increment": 1 / RATE, "unit_string": unit})
+                for name, values, unit in named
+            ]
+            file.write_segment(told)
+
+
+@pytest.mark.parametrize("write", [_npz, _mat, _hdf5, _tdms])
+def test_files_of_recorders_are_imported(tmp_path: Path, write: Callable[..., None]) -> None:
+    strength = np.array([[1.0], [0.8], [0.9]])
+    force = 90.0 * strength * np.exp(-(((TIME - 0.02) / 0.0015) ** 2))
+    write(tmp_path, force, 4.0 * strength * np.exp(-5 * TIME) * np.sin(530 * TIME))
+    importing = Importing(tmp_path)
+    names = importing.page()["chosen"]
+    found = importing.proposed(names, {})
+    assert found["recorded"] and found["error"] == ""
+    assert any(line.startswith("force: ") for line in found["lines"])
+    checked = importing.checked(names, found["form"])
+    assert checked["error"] == ""
+    assert checked["table"] == [["1+Z", 3, "1+Z", f"{force.max():.3g}", "3.94"]]
+    importing.write(names, found["form"], title="", layout="layout.toml", study="study.toml")
+    assert importing.controller is not None
+    assert len(importing.controller.hits()["hits"]) == 3
+    importing.close()
+
+
+def test_frfs_of_a_matlab_file_are_imported(tmp_path: Path) -> None:
+    lines = np.arange(401) * 0.5
+    frfs = np.stack([-(lines**2) * k / (85.0**2 - lines**2 + 2j * lines) for k in (1, 2, 3)], axis=1)
+    savemat(tmp_path / "frfs.mat", {"f": lines, "H": frfs[:, :, None]})
+    importing = Importing(tmp_path)
+    found = importing.proposed(["frfs.mat"], {})
+    assert "H: 401 x 3 x 1, complex" in found["lines"]
+    form = found["form"]
+    assert form["mat"]["axes"] == "line, response, reference"
+    form["mat"] |= {"quantity": "mobility", "responses": "4+Z, 5+Z", "references": "4-Z"}
+    assert "responses" in importing.checked(["frfs.mat"], form)["error"]
+    form["mat"]["responses"] = "4+Z, 5+Z, 6+Z"
+    checked = importing.checked(["frfs.mat"], form)
+    assert checked["usable"][0].startswith("3 FRFs (mobility), hit at 1 point (4-Z)")
+    assert checked["table"][0][:2] == ["4-Z", 3]
+
+
 def test_what_is_there_is_not_replaced(tmp_path: Path) -> None:
     names = hits(tmp_path)
     (tmp_path / "layout.toml").write_text("mine")
@@ -202,7 +288,7 @@ def test_what_opens_the_import(tmp_path: Path) -> None:
     assert subject.page()["chosen"] == names
     assert "layout" in subject.page()["why"]
     (tmp_path / "empty").mkdir()
-    with pytest.raises(InputError, match="no column text in it"):
+    with pytest.raises(InputError, match="no column text or recorder file in it"):
         subject_of(tmp_path / "empty")
     with pytest.raises(InputError, match="there is no such file"):
         subject_of(tmp_path / "absent.csv")

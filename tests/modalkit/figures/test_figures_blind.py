@@ -53,7 +53,7 @@ def test_blind_confusion_shares_classes_and_gathers_pairs() -> None:
         (3, "none"),
     ]
     figure = blind_figures(result)["blind_confusion"]
-    assert "4 of 6 blind trials answered truly" in words(figure)
+    assert "4 of 6 blind trials answered correctly" in words(figure)
 
 
 @pytest.mark.long

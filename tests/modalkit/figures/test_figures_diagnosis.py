@@ -113,6 +113,10 @@ def test_answers_say_the_verdict() -> None:
         mass.replace("\N{NO-BREAK SPACE}", " ")
         == "The mass of the sensor explains the gap: 12.1 g (95 %: 11.5 to 12.6)"
     )
+    several = replace(diagnosis_of("beam"), sets=(("length", "sensor_mass"),))
+    assert answer(several) == "The length and the mass of the sensor together explain the gap"
+    several = replace(several, sets=(("length", "sensor_mass", "shear"),))
+    assert answer(several).startswith("The length, the mass of the sensor, and shear")
     assert "cannot show which" in answer(diagnosis_of("beam", verdict="class", first="E"))
     assert "nothing in the library" in answer(diagnosis_of("beam", verdict="unknown"))
     assert answer(diagnosis_of("beam", verdict="none")).startswith("No gap")

@@ -153,8 +153,9 @@ def test_the_message_says_what_to_type(refused: Refused) -> None:
 
 
 def test_one_file_is_not_asked_for_twice(refused: Refused) -> None:
-    assert "asked for twice" in refused("diagnose", "study.toml", "--json", "new", "--report", "./new")
-    assert "asked for twice" in refused("identify", "test.uff", "--json", "new.json", "-o", "./new.json")
+    twice = "given for two different results"
+    assert twice in refused("diagnose", "study.toml", "--json", "new", "--report", "./new")
+    assert twice in refused("identify", "test.uff", "--json", "new.json", "-o", "./new.json")
 
 
 def test_a_batch_does_not_touch_the_tables_and_results_of_others(refused: Refused, folder: Path) -> None:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from test_localisation_figure import diagnosis_with
 
 from acquisition import Dof, FrfSet
-from identification import cmif, pole_origins
+from identification import cmif, mvmif, pole_origins
 from modalkit.output.whole import plain
 from modalkit.report.scripts import scripts
 from modalkit.views.chart import Chart, rounded
@@ -25,7 +25,7 @@ from modalkit.views.charts.gap import gap_chart, gap_title
 from modalkit.views.charts.matrix import matrix_chart
 from modalkit.views.charts.place import place_chart
 from modalkit.views.charts.poles import poles_chart
-from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart
+from modalkit.views.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, mvmif_chart
 from modalkit.views.charts.thin import FEWEST, LARGEST, common_lines
 from modalkit.views.mode_errors import ModeErrors
 from modalkit.views.shapes import Beside, shapes_page
@@ -164,8 +164,12 @@ def test_mac_cells_hold_the_matrix() -> None:
 
 def test_indicator_functions_are_those_of_the_room() -> None:
     frfs = model_of(12).frfs
-    chart = cmif_chart(frfs, cmif(frfs))
-    assert chart.title.startswith(f"{len(chart.series)} mode indicator function")
+    for word, chart in (("CMIF", cmif_chart(frfs, cmif(frfs))), ("MvMIF", mvmif_chart(frfs, mvmif(frfs)))):
+        assert chart.title.startswith(f"{word}: {len(chart.series)} mode indicator function")
+    modes = model_of(12).modal.frequency
+    first = mvmif(frfs)[1]
+    assert all(first[np.abs(first.index - f) < 3 * frfs.df].min() < 0.5 for f in modes)
+    np.testing.assert_array_equal(chart.series[0].y, first[first.index > 0])
 
 
 @given(st.floats(allow_nan=True, allow_infinity=True))

@@ -176,7 +176,7 @@ def test_text_that_is_no_table_of_modes_still_asks_for_its_layout(tmp_path: Path
             "twice",
         ),
         ({"modes": [{"frequency_hz": 3.0, "dampingratio": 0.01}]}, "'damping_ratio' is probably meant"),
-        ({"modes": [{"frequency_hz": 3.0, "mpc": 1.0}, {"frequency_hz": 4.0}]}, "'mpc' stands not in all"),
+        ({"modes": [{"frequency_hz": 3.0, "mpc": 1.0}, {"frequency_hz": 4.0}]}, "'mpc' is missing from some"),
         (
             {
                 "modes": [
@@ -189,7 +189,7 @@ def test_text_that_is_no_table_of_modes_still_asks_for_its_layout(tmp_path: Path
                     }
                 ]
             },
-            "'sigma' stands not in all",
+            "'sigma' is missing from some",
         ),
         ({"nods": [{"node": 1, "x": 0.0, "y": 0.0, "z": 0.0}]}, "'nodes' is probably meant"),
         ({"nodes": [{"node": 1, "x": 0.0, "y": 0.0}]}, "z = None"),
@@ -244,7 +244,7 @@ def test_cmif_has_a_peak_for_each_of_two_modes_at_one_frequency() -> None:
     np.testing.assert_allclose(table[2], 2.0 * np.abs(h) ** 2, rtol=1e-12)
     assert table.index.name == "frequency [Hz]" and table[2].idxmax() == 100.0
     assert mk.cmif(frfs.select(np.arange(5))).attrs["left_out"] == ["3+Z"]
-    assert set(mk.draw(frfs)) == {"frf", "cmif"}
+    assert set(mk.draw(frfs)) == {"frf", "cmif", "mvmif"}
     with pytest.raises(InputError, match="every reference"):
         mk.cmif(frfs.select(np.array([0, 3])))
 

@@ -176,7 +176,7 @@ def test_length_and_sensor_of_two_specimens_are_named() -> None:
 
 def test_titles_alike_and_unknown_shared_effects_are_refused() -> None:
     one = specimen_of("beam", "strip", "length", "sensor_mass")
-    with pytest.raises(InputError, match="titled alike"):
+    with pytest.raises(InputError, match="have the same title"):
         diagnose_together([one, one])
     other = replace(one, title="another")
     with pytest.raises(InputError, match="no such effect"):

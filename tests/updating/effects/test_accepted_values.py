@@ -49,10 +49,10 @@ def test_an_accepted_effect_must_exist() -> None:
     [
         ("lumped_mass", {"mass": 0.01, "x": 99.0}, "x = 99 m is off the structure"),
         ("lumped_mass", {"mass": -0.01, "x": 0.1}, "mass = -0.01 kg must be positive"),
-        ("lumped_mass", {"mass": 1e300, "x": 0.1}, "million times beyond"),
+        ("lumped_mass", {"mass": 1e300, "x": 0.1}, "million times outside"),
         ("sensor_mass", {"mass": 0.01, "bulk": -1.0}, "bulk = -1 must not be negative"),
-        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": 1.0}, "takes away all stiffness"),
-        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": -1e300}, "million times beyond"),
+        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": 1.0}, "removes all stiffness"),
+        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": -1e300}, "million times outside"),
         ("clamp_rotation", {"stiffness": -1.0}, "stiffness = -1 N m/rad must be positive"),
         ("E", {"factor": 0.0}, "factor = 0 must be positive"),
         ("length", {"extension": -0.376}, "leaves nothing of the structure"),

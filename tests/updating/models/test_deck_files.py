@@ -173,7 +173,7 @@ def test_without_ccx_the_error_says_how_to_get_it(
 def test_numbers_that_are_not_there(bricks: Bricks, tmp_path: Path) -> None:
     model = read_deck_model(written(tmp_path, bar(bricks)), units="mm-t-s")
     for name, message in {
-        "TIP.thickness": "it has no thickness to turn",
+        "TIP.thickness": "it has no thickness to change",
         "FOOT.stiffness": r"no \*SPRING, ELSET=FOOT in .*; there are: none",
         "FACE.x": "no node set FACE; there are: ALL, CLAMP, END",
         "ALL.x": "the set holds every node",

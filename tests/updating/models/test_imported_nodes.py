@@ -171,7 +171,7 @@ SLIPS = [
     (NODES + "*NSE 2\n", "is not a card"),
     (NODES + "*BOUNDARY\n*STEP\n*FREQUENCY\n3\n", "BOUNDARY without a line before this"),
     (NODES + "*NSET, NSET=A\n3\n*END STEP\n", "END STEP without a \\*STEP before it"),
-    (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "behind the end of a step"),
+    (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "follows the end of a step"),
     (NODES + "*BOY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*NSET, NSET=A, GETE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*NSET, NSET=A, GENOUNDARY\nA, 1, 3\n", "\\*NSET with GENOUNDARY is not followed"),
@@ -179,7 +179,7 @@ SLIPS = [
     (NODES + "*\n", "is not a card"),
     (NODES + "*NSET, NSET=A\n*STEP\n", "\\*NSET without a line"),
     (NODES + "*BOUNDARY\n1, 1, 3, 0.1\n", "elsewhere than at rest"),
-    (NODES + "2, 1.5, 0, 0\n", "node 2 stands at another place before"),
+    (NODES + "2, 1.5, 0, 0\n", "node 2 was defined before at another place"),
     (NODES + "4, 1. 5, 0, 0\n", "is not a node line"),
     (NODES + "4, nan, 0, 0\n", "is not a node line"),
     (NODES + "*INCLUDE, INPUT=job.inp\n" * 8, "line 5: .*job.inp includes itself"),
@@ -207,5 +207,5 @@ def test_files_that_include_each_other_twice_end(tmp_path: Path) -> None:
     for k in range(20):
         (tmp_path / f"{k}.inp").write_text(f"*INCLUDE, INPUT={k + 1}.inp\n" * 2)
     (tmp_path / "20.inp").write_text(NODES)
-    with pytest.raises(StudyError, match="over and over"):
+    with pytest.raises(StudyError, match="too many times"):
         read_deck(tmp_path / "0.inp")

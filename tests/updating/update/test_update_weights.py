@@ -145,5 +145,5 @@ def test_one_of_two_accepted_effects_of_a_name_is_not_updated_blindly() -> None:
     bodies = tuple(("lumped_mass", {"mass": 0.005, "x": x}) for x in (0.2, 0.3))
     both = replace(case_of(), accepted=bodies)
     assert update(both, parameters=["E"]).converged
-    with pytest.raises(StudyError, match=r"lumped_mass stands 2 times in \[\[model.effect\]\]"):
+    with pytest.raises(StudyError, match=r"lumped_mass is given 2 times in \[\[model.effect\]\]"):
         update(both, parameters=["lumped_mass.mass"])

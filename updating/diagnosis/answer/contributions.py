@@ -106,7 +106,7 @@ def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str], *, no
     one by chance.
     """
     if not excess.size or excess.max() < notable:
-        return "No mode stands out: none is further off than noise and tolerances allow."
+        return "No mode stands out: all deviations are within noise and tolerances."
     worst = int(np.argmax(excess.max(axis=0)))
     column = excess[:, worst]
     order = np.argsort(frequency)

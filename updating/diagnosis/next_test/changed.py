@@ -79,7 +79,7 @@ class Levels(Trial):
 
     family = "levels"
     cost = 4
-    measure = "hit each point softly and hard, the levels some 1 : 5 apart"
+    measure = "hit each point softly and hard, with forces of about 1 : 5"
     gain = 4.0
     """How many times better a dependence on the force is known once hits span such levels [-]."""
 

@@ -19,7 +19,7 @@ AT_A_PLACE: Mapping[str, str] = {
     "stiffness": "look for a crack, a loose joint, a rib or a repair {where}, and touch the structure there; take off "
     "what holds it, and repeat the test",
     "mass": "look for a body, a layer or a filling {where}, take it off and repeat the test",
-    "damping": "look for what rubs or sticks {where}, take it off and repeat the test",
+    "damping": "look for parts that rub or stick {where}, take it off and repeat the test",
     "measurement": "hit again, with another cable and sensor, {where}",
 }
 """What settles a change of each channel at a place."""
@@ -27,7 +27,8 @@ AT_A_PLACE: Mapping[str, str] = {
 EVERYWHERE: Mapping[str, str] = {
     "stiffness": "measure thickness and length of the specimen, and the modulus of its material",
     "mass": "weigh the specimen",
-    "damping": "repeat the test on other supports, without window, at another temperature: this shows what damps",
+    "damping": "repeat the test on other supports, without window, at another temperature: this shows "
+    "where the damping comes from",
     "measurement": "calibrate all channels with a known free mass, and repeat the test",
 }
 """What settles a change of each channel all over."""
@@ -63,7 +64,7 @@ def advise(
     points = _points_that_miss(site, problem, least_bad)
     if points:
         stated.append(
-            f"hit again, with care, point {', '.join(points)}, where even the best-fitting explanation misses most, "
+            f"hit again, with care, point {', '.join(points)}, where the best explanation fits worst, "
             "and a point or two beside it"
         )
     if problem.baseline is None:

@@ -32,7 +32,7 @@ class Drift(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the rate."""
-        why = "from what no test is free of, 2 K on metals, to 15 K on plastics; of either sign, uniform in its log"
+        why = "from 2 K on metals, which every test has, to 15 K on plastics; of either sign, uniform in its log"
         # identification believes shifts of 2 % to either side of the middle; plastics are ten times as soft to
         # temperature as metals. Doubled: faint drifts need a little more evidence
         bounds = -0.04, 0.04

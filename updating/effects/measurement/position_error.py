@@ -33,7 +33,7 @@ class PositionError(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return how far it lies from where it was stated."""
         far = FARTHEST * predictor.spec.length
-        why = "from what a tape measure gets wrong to the next point of a coarse grid"
+        why = "from the error of a tape measure to the spacing of a coarse grid"
         axes = ("dx", "dy")[: predictor.spec.dim]
         return tuple(Parameter(name, "m", -far, far, why, natural=EDGES) for name in axes)
 

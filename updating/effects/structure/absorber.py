@@ -47,7 +47,7 @@ class Absorber(Effect):
     phrase = "a mass on a spring"
     models = ("beam", "plate", "matrices")
     separated_by = (
-        "look for what swings by itself and take it off, or hold it still; or more points around it"
+        "find the part that vibrates by itself and remove or fix it; or measure more points around it"
     )
     fidelity = 0.03
     damping_doubt = SLIPS
@@ -57,7 +57,7 @@ class Absorber(Effect):
         whole = total_mass(predictor.spec)
         low = lowest(predictor) / (2 * np.pi) / AWAY
         high = max(AWAY * predictor.measured.top, AWAY**2 * low)
-        heavy = "from what hardly shows to a third of the structure's own mass"
+        heavy = "from a barely detectable mass to a third of the structure's mass"
         where = "its own mode among those of the band, or beside them"
         lossy = "from steel on steel to a mode that no test distinguishes from the floor"
         return (

@@ -47,7 +47,7 @@ class AxialLoad(Effect):
         """Need a support to push against."""
         if predictor.spec.clamped:
             return None
-        return Obstacle(Lack.MODEL, "nothing holds a free structure against an axial force")
+        return Obstacle(Lack.MODEL, "a free structure has no support that could take an axial force")
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a thrust, and from a small and a large tension."""

@@ -54,12 +54,12 @@ class LocalMass(EitherWay):
     phrase = "a place of another mass"
     equivalent_to = ("lumped_mass", "density", "damping_patch")
     screened = MappingProxyType({"extent": SCREENED})
-    separated_by = "look for what sticks there and weigh it, or the part; or more points on it"
+    separated_by = "find the added part and weigh it; or measure more points on it"
     fidelity = 0.03
 
     among = (0.05, 0.4)  # a third of the side with some room
-    why = "what is longer goes to the whole structure, what is shorter moves as a body does"
-    lacking = "the matrices have no mass_parts: nothing can be heavier at a place; give one per region"
+    why = "a longer one is the whole structure; a shorter one has the effect of a body"
+    lacking = "the matrices have no mass_parts: the mass of a place cannot be changed; give one per region"
     upper = 0.8
     """What is stuck on and not modelled is far commoner than what is missing and took no stiffness with it. Judged; the
     lighter one's share doubled, it gains ln 2."""

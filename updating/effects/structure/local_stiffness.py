@@ -58,10 +58,8 @@ class LocalStiffness(EitherWay):
     fidelity = 0.05  # some 0.03 of a sharp-edged place seen as one with soft edges, 0.02 of the condensation
 
     among = (0.02, 0.4)  # a third of the side with some room
-    why = "what is longer is a region, not a place; what is shorter makes no other change than this"
-    lacking = (
-        "the matrices have no stiffness_parts: nothing can soften or stiffen at a place; give one per region"
-    )
+    why = "a longer one is a region, not a place; a shorter one has the same effect"
+    lacking = "the matrices have no stiffness_parts: the stiffness of a place cannot be changed; give one per region"
     upper = 0.7
     """What breaks or comes loose is commoner than what was added and not modelled. Judged; doubled for the stiffer form
     it gains ln 2."""

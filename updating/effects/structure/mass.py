@@ -130,9 +130,7 @@ class SensorMass(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the mass of one sensor."""
         high = 0.5 * total_mass(predictor.spec)
-        why = (
-            "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
-        )
+        why = "from the lightest accelerometer with its wax to an impedance head of half the structure's mass"
         mass = Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True)
         return (mass, _bulk(STILL), *self._astray(predictor))
 
@@ -215,7 +213,7 @@ class LumpedMass(Effect):
     screened = MappingProxyType({"bulk": (0.1, 0.6)})
     named = ("at",)
     repeats = True
-    separated_by = "look for the body and take it off; or more points around the place"
+    separated_by = "find the body and remove it; or measure more points around the place"
     fidelity = 0.03
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:

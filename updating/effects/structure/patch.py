@@ -81,13 +81,15 @@ class DampingPatch(Effect):
         spec = predictor.spec
         if spec.kind == "matrices":
             return layer
-        why = "what is shorter hardly damps, what covers more is all over"
+        why = "a shorter layer hardly damps; a longer one covers the whole structure"
         return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why), *layer)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping, and regions where there are matrices."""
         if predictor.spec.kind == "matrices" and len(stiff_regions(predictor)) < 2:
-            what = "the matrices have no stiffness_parts: nothing can stick to a part; give one per region"
+            what = (
+                "the matrices have no stiffness_parts: no layer can be added to a part; give one per region"
+            )
             return Obstacle(Lack.MODEL, what)
         return damping_obstacle(predictor)
 

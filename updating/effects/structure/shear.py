@@ -25,7 +25,9 @@ class Shear(Effect):
     models = ("beam", "plate")
     separated_by = 'theory = "timoshenko" (beams) or "mindlin" (plates); nothing has to be measured'
     phrase = "shear and rotary inertia"
-    elsewhere = MappingProxyType({"matrices": "the elements that made the matrices have it or have it not"})
+    elsewhere = MappingProxyType(
+        {"matrices": "whether shear is included is fixed by the elements of the matrices"}
+    )
     fuller = True
     fidelity = 0.01
 

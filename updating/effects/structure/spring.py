@@ -77,7 +77,7 @@ class GroundSpring(Effect):
     screened = MappingProxyType({"extent": (0.1, 0.6), "damping": (0.5,)})
     repeats = True
     separated_by = (
-        "look for what touches the structure there and take it off; or more points around the place"
+        "find what touches the structure there and remove it; or measure more points around the place"
     )
     undone_by = frozenset({"unclamped"})
     fidelity = 0.03
@@ -88,7 +88,7 @@ class GroundSpring(Effect):
         spec = predictor.spec
         low, high = (share * own_stiffness(predictor) for share in STIFFNESS)
         held = "from the softest cable that repeated tests detect to a stop"
-        why = "a point is a form of its own; what is longer goes to the whole structure"
+        why = "a point is a form of its own; a longer one is the whole structure"
         size = max(spec.length, spec.width) if spec.kind == "plate" else spec.length
         lossy = "from hardly detectable to a dashpot that all but holds the lowest mode"
         extent = SHORTEST * spec.length, size

@@ -47,7 +47,7 @@ class Taper(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the slope."""
         least, most = SLOPES
-        why = "from what a caliper misses to a wedge over twice as thick at one end; of either sign, uniform in its log"
+        why = "from the error of a caliper to a wedge over twice as thick at one end; of either sign, uniform in log"
         return (EitherSign("slope", "-", -most, most, why, signed=True, least=least),)
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:

@@ -44,7 +44,7 @@ def _real(values: AnyArray, path: Path) -> AnyArray:
     if values.dtype.kind not in "fiu":
         raise StudyError(f"{path}: holds {values.dtype} values; stiffness and mass are real")
     if not np.isfinite(values).all():
-        raise StudyError(f"{path}: an entry is not finite; write it anew")
+        raise StudyError(f"{path}: an entry is not finite; write it again")
     return np.asarray(values, dtype=np.float64)
 
 

@@ -53,7 +53,7 @@ def read_boeing(path: Path) -> Sparse:
         return _read(lines, path)
     except (ValueError, IndexError) as error:
         raise StudyError(
-            f"{path}: not a Harwell-Boeing file, damaged or cut short ({error}); write it anew or use MatrixMarket"
+            f"{path}: not a Harwell-Boeing file, damaged or cut short ({error}); write it again or use MatrixMarket"
         ) from error
 
 

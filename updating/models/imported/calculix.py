@@ -31,7 +31,7 @@ def read_triplets(path: Path) -> Sparse:
     check_order(order, len(value), path)
     matrix = Sparse(sparse.coo_array((value, (row - 1, column - 1)), (order, order)).tocsr())
     if matrix.nnz < len(value):
-        raise StudyError(f"{path}: {len(value) - matrix.nnz} entries are given twice; run ccx anew")
+        raise StudyError(f"{path}: {len(value) - matrix.nnz} entries are given twice; run ccx again")
     one_triangle = bool((row <= column).all() or (row >= column).all())
     return Sparse(matrix + matrix.T - sparse.diags_array(matrix.diagonal())) if one_triangle else matrix
 

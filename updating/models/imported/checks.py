@@ -137,7 +137,7 @@ def check_mass(mass: Sparse, source: str, places: FloatArray | None = None) -> N
     if found is not None:
         count, row = found
         raise StudyError(
-            f"{source}: mass matrix indefinite: {count} motion(s) have a negative mass, the first met at row {row}"
+            f"{source}: mass matrix indefinite: {count} motion(s) have a negative mass, the first found at row {row}"
         )
 
 

@@ -106,7 +106,7 @@ def read_deck(path: Path) -> Deck:
             filled = False
             continue
         if card == "*END STEP":
-            raise StudyError(f"{where}: {line[:40]!r} stands behind the end of a step, without a card")
+            raise StudyError(f"{where}: {line[:40]!r} follows the end of a step and belongs to no card")
         filled = True
         if card in ("*BOUNDARY", "*TRANSFORM"):  # a line stated twice holds nothing more
             if (once := (card, options.get("NSET", ""), line.upper())) in seen:
@@ -199,7 +199,7 @@ def _place(deck: Deck, line: str, where: str) -> int:
     number, found = int(word), [float(p.upper().replace("D", "E")) for p in place]
     coordinates = np.array([*found, 0.0, 0.0][:3])
     if number in deck.nodes and not np.array_equal(deck.nodes[number], coordinates):
-        raise StudyError(f"{where}: node {number} stands at another place before; keep one of the two")
+        raise StudyError(f"{where}: node {number} was defined before at another place; keep one of the two")
     deck.nodes[number] = coordinates
     return number
 

@@ -44,7 +44,7 @@ def check_hollow(
     row = int(np.flatnonzero(above.perm_c == int(np.flatnonzero(above.U.diagonal() < 0)[0]))[0]) + 1
     raise StudyError(
         f"{source}: singular: {count} motion(s) have neither stiffness nor mass, one shows at row {row}; "
-        "elements of reduced integration (C3D20R), one across, leave such: take C3D20, or two across"
+        "a single layer of reduced-integration elements (C3D20R) leaves such: use C3D20, or two layers"
     )
 
 

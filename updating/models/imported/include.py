@@ -34,7 +34,7 @@ class _Work:
         self.sizes[path.resolve()] = len(text)
         self.done += len(text)
         if self.done > OVER * sum(self.sizes.values()):
-            raise StudyError(f"{where}{path} is included over and over; include every file once")
+            raise StudyError(f"{where}{path} is included too many times; include every file once")
         return text
 
 

@@ -116,7 +116,7 @@ def rows_of(matrices: Sequence[Labelled]) -> tuple[dict[tuple[int, int], int], l
 def _of_abaqus(path: Path) -> Labelled:
     row, of_row, column, of_column, value = columns_of(path.read_bytes().replace(b",", b" "), "iiiif", path)
     if not len(value):
-        raise StudyError(f"{path}: holds no entry; export it anew")
+        raise StudyError(f"{path}: holds no entry; export it again")
     return _once(Labelled(np.stack([row, of_row], 1), np.stack([column, of_column], 1), value, str(path)))
 
 
@@ -127,7 +127,7 @@ def _once(found: Labelled) -> Labelled:
         node, direction, other, way = places[np.argmax(counts)].tolist()
         raise StudyError(
             f"{found.source}: the entry of {node}.{direction} and {other}.{way} (node.direction) is given "
-            "twice; write the file anew"
+            "twice; write the file again"
         )
     return found
 
@@ -146,12 +146,14 @@ def _punched(path: Path, kind: str, name: str | None) -> Labelled:
             at = _column(line, where) if of == wanted else None
         elif line.startswith("*") and of == wanted:
             if at is None:
-                raise StudyError(f"{where}: an entry of {of} without a column before it; punch the file anew")
+                raise StudyError(
+                    f"{where}: an entry of {of} without a column before it; punch the file again"
+                )
             entries.append((*at, *_entry(line, where)))
         elif line[:1] not in ("$", "*"):
             of, cut_off = "", of or cut_off
     if not entries:
-        raise StudyError(f"{path}: {wanted} has no entries in large fields of 16 columns; punch it anew")
+        raise StudyError(f"{path}: {wanted} has no entries in large fields of 16 columns; punch it again")
     table = np.array([entry[:4] for entry in entries], dtype=np.int64)
     return _once(Labelled(table[:, 2:], table[:, :2], np.array([entry[4] for entry in entries]), str(path)))
 
@@ -170,7 +172,7 @@ def _matrix_of(line: str, open_to: Collection[str], where: str) -> str:
         if not name or line[16:24].strip() != "0":
             raise StudyError(
                 f"{where}: no header of a matrix, which is DMIG, a name and 0 in fields of 8 columns, nor a column, "
-                "which is DMIG*; punch the file anew"
+                "which is DMIG*; punch the file again"
             )
         return name
     name = line[8:24].strip()
@@ -210,7 +212,7 @@ def _entry(line: str, where: str) -> tuple[int, int, float]:
     node, direction = _whole(fields[:2], where)
     word = re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", fields[2].upper().replace("D", "E"))
     if not NUMBER.fullmatch(word) or not np.isfinite(float(word)):
-        raise StudyError(f"{where}: {fields[2]!r} is not a number; punch the file anew")
+        raise StudyError(f"{where}: {fields[2]!r} is not a number; punch the file again")
     return node, direction, float(word)
 
 
@@ -218,13 +220,13 @@ def _fields(line: str, where: str) -> list[str]:
     """Return the first three large fields of a line; a real matrix has nothing in the fourth."""
     *fields, rest = [line[8 + FIELD * i : 8 + FIELD * (i + 1)].strip() for i in range(4)]
     if rest or line[CARD:].strip():
-        raise StudyError(f"{where}: more than three fields of {FIELD} columns; punch the file anew")
+        raise StudyError(f"{where}: more than three fields of {FIELD} columns; punch the file again")
     return fields
 
 
 def _whole(words: Sequence[str], where: str) -> list[int]:
     if not all(word.isascii() and word.isdigit() and len(word) < 19 for word in words):
         raise StudyError(
-            f"{where}: node and direction are {words}; fields are 16 columns wide, punch it anew"
+            f"{where}: node and direction are {words}; fields are 16 columns wide, punch it again"
         )
     return [int(word) for word in words]

@@ -33,11 +33,11 @@ def read_market(path: Path) -> Sparse:
     whole = (3, "three") if form == "coordinate" else (2, "two")
     if len(size) != whole[0] or not all(word.isdigit() and len(word) < 19 for word in size):
         raise StudyError(
-            f"{path}, line {first - 1}: the size is not given in {whole[1]} whole numbers; write it anew"
+            f"{path}, line {first - 1}: the size is not given in {whole[1]} whole numbers; write it again"
         )
     numbers = [int(word) for word in size]
     if symmetry == "symmetric" and numbers[0] != numbers[1]:
-        raise StudyError(f"{path}: symmetric, but {numbers[0]} x {numbers[1]}; write it anew")
+        raise StudyError(f"{path}: symmetric, but {numbers[0]} x {numbers[1]}; write it again")
     if form == "array":
         return _dense(columns_of(body, "f", path, first=first)[0], numbers[0], numbers[1], symmetry, path)
     row, column, value = columns_of(body, "iif", path, first=first)
@@ -46,7 +46,7 @@ def read_market(path: Path) -> Sparse:
     for index, limit, name in ((row, numbers[0], "row"), (column, numbers[1], "column")):
         if wrong := index[(index < 1) | (index > limit)][:1].tolist():
             raise StudyError(
-                f"{path}: {name} {wrong[0]} in a matrix of {numbers[0]} x {numbers[1]}; write it anew"
+                f"{path}: {name} {wrong[0]} in a matrix of {numbers[0]} x {numbers[1]}; write it again"
             )
     matrix = sparse.coo_array((value, (row - 1, column - 1)), (numbers[0], numbers[1]))
     return _completed(matrix) if symmetry == "symmetric" else Sparse(matrix.tocsr())
@@ -75,7 +75,7 @@ def _sized(text: bytes | bytearray, path: Path) -> tuple[list[bytes], bytes, int
         start, number = stop + 1, number + 1
         if line and not line.startswith(b"%"):
             return [bytes(word) for word in line.split()], bytes(memoryview(text)[start:]), number + 1
-    raise StudyError(f"{path}: not a MatrixMarket file: no line with its size; write it anew")
+    raise StudyError(f"{path}: not a MatrixMarket file: no line with its size; write it again")
 
 
 def _check_count(found: int, stated: int, path: Path) -> None:

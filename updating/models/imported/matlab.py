@@ -68,5 +68,5 @@ def _real(values: AnyArray, path: Path) -> AnyArray:
     """Return entries in double precision."""
     found = values.astype(np.float64)
     if not np.isfinite(found).all():
-        raise StudyError(f"{path}: an entry is not finite; write it anew")
+        raise StudyError(f"{path}: an entry is not finite; write it again")
     return found

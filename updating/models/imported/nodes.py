@@ -274,7 +274,7 @@ def read_deck_table(path: Path, dofs: Path, order: int) -> NodeTable:
     node, direction = read_dofs(dofs)
     if len(node) != order:
         raise StudyError(
-            f"{dofs}: {len(node)} degrees of freedom where the matrices have {order} rows; run ccx anew"
+            f"{dofs}: {len(node)} degrees of freedom where the matrices have {order} rows; run ccx again"
         )
     return deck_table(deck, node, direction, f"{path} and {dofs.name}")
 

@@ -27,7 +27,7 @@ twice as many would let a file of a kilobyte ask for twice the memory."""
 def check_order(order: int, entries: int, path: Path) -> None:
     """Refuse a matrix with far more rows than entries: its size is a slip of the pen, and would fill the memory."""
     if order > 1000 + SPARSEST * entries:
-        raise StudyError(f"{path}: row or column {order} in a matrix of {entries} entries; write it anew")
+        raise StudyError(f"{path}: row or column {order} in a matrix of {entries} entries; write it again")
 
 
 def columns_of(text: bytes, kinds: str, path: Path, *, first: int = 1) -> list[AnyArray]:
@@ -83,7 +83,7 @@ def _fault(text: bytes, kinds: str, path: Path, first: int) -> StudyError:
         words = raw.decode("latin-1").split()
         if words and (why := _wrong(words, kinds)):
             return StudyError(f"{path}, line {number}: {why}")
-    return StudyError(f"{path}, line {first}: the numbers cannot be read; write the file anew")
+    return StudyError(f"{path}, line {first}: the numbers cannot be read; write the file again")
 
 
 def _wrong(words: list[str], kinds: str) -> str:

@@ -13,7 +13,7 @@ from acquisition.errors import StudyError
 def too_much(path: Path, packed: int) -> StudyError:
     """Return the error of a file that becomes too much."""
     return StudyError(
-        f"{path}: {packed} bytes that unpack to more than {allowed(packed)}; unpack it first, or save it without "
+        f"{path}: {packed} bytes that decompress to more than {allowed(packed)}; unpack it first, or save it without "
         "compression"
     )
 
@@ -34,5 +34,5 @@ def unpacked(path: Path) -> bytearray:
                 if len(content) > allowed(packed):
                     raise too_much(path, packed)
     except (OSError, EOFError, zlib.error) as error:
-        raise StudyError(f"{path}: not a whole .gz ({error}); pack it anew") from error
+        raise StudyError(f"{path}: not a whole .gz ({error}); compress it again") from error
     return content

@@ -150,7 +150,7 @@ export function open(root, app) {
         columns,
         ranking.map(([row, i, own]) => [
           row.effects.join(" + ").replaceAll("_", " ") || "tolerances alone",
-          own?.probability ?? `${fixed(100 * row.probability, 1)} %`,
+          own?.probability ?? (row.probability < 0.0005 ? "< 0.1 %" : `${fixed(100 * row.probability, 1)} %`),
           own?.parameters ?? "",
           own?.p ?? "",
           own?.entries
@@ -183,7 +183,7 @@ export function open(root, app) {
         ? table(
             "What to measure next",
             [{ name: "measure", wide: true }, { name: "separates", wide: true }, { name: "σ", number: true }],
-            found.next.map((t) => [t.measure, t.separates, fixed(t.sigma, 1)]),
+            found.next.map((t) => [t.measure, t.separates.replaceAll("_", " "), fixed(t.sigma, 1)]),
           )
         : h("p", {}, "No further test is proposed."),
       Object.keys(d.not_examined).length
@@ -194,7 +194,7 @@ export function open(root, app) {
             h(
               "ul",
               {},
-              Object.entries(d.not_examined).map(([k, v]) => h("li", {}, `${k}: ${v}`)),
+              Object.entries(d.not_examined).map(([k, v]) => h("li", {}, `${k.replaceAll("_", " ")}: ${v}`)),
             ),
           )
         : null,

@@ -1,4 +1,4 @@
-// Import of text: files chosen, columns guessed and corrected, what would be read, layout and study written.
+// Import of text and of recorder files: files chosen, columns guessed and corrected, what would be read, layout and study written.
 
 import { get, post } from "../api.js";
 import { button, check, field, fill, h, select, table } from "../dom.js";
@@ -6,6 +6,15 @@ import { button, check, field, fill, h, select, table } from "../dom.js";
 const PAUSE = 300; // milliseconds after the last correction until the files are read with it
 const DIRECTIONS = ["+x", "-x", "+y", "-y", "+z", "-z", "+rx", "-rx", "+ry", "-ry", "+rz", "-rz"].map((d) => [d, d]);
 const PARTS = ["real", "imag", "magnitude", "phase"].map((p) => [p, p]);
+const MAT = [
+  ["frfs", "FRFs are in"],
+  ["frequency", "Frequencies are in"],
+  ["axes", "Dimensions"],
+  ["quantity", "Quantity", ["accelerance", "mobility", "receptance"].map((q) => [q, q])],
+  ["unit", "Unit"],
+  ["responses", "Measured at"],
+  ["references", "Hit at"],
+]; // of an array of FRFs in a MATLAB file: key, label, choices
 const AXES = ["", "time", "frequency"]; // what a column can be without being read as a signal
 
 export function open(root, app) {
@@ -20,8 +29,9 @@ export function open(root, app) {
   const view = { page: null, files: new Set(), form: null, written: {}, asked: 0, timer: null, closed: false };
   const panel = (title, ...inside) => h("section", { class: "panel" }, h("h2", {}, title), ...inside);
   const columned = panel("Columns", once, columns),
-    last = panel("What is read", read, making);
-  root.append(panel("Files", list), panel("First lines", writing, lines), columned, last);
+    last = panel("What is read", read, making),
+    shown = panel("First lines", writing, lines);
+  root.append(panel("Files", list), shown, columned, last);
 
   async function update() {
     if (view.page) return;
@@ -35,7 +45,7 @@ export function open(root, app) {
   const chosen = () => view.page.files.filter((name) => view.files.has(name));
 
   function listed() {
-    const pattern = h("input", { type: "text", id: "import-pattern", placeholder: "P*_*.csv", size: 14 });
+    const pattern = h("input", { type: "text", id: "import-pattern", placeholder: "P*_*.csv, P1/*", size: 14 });
     const again = (names) => {
       view.files = new Set(names);
       listed();
@@ -114,6 +124,8 @@ export function open(root, app) {
       ? await app.working("guessing the columns", () => post("proposed", { files, written: view.written }))
       : { lines: [], form: null, error: "No file is chosen." };
     if (asked !== view.asked || view.closed) return;
+    writing.hidden = Boolean(found.recorded);
+    shown.querySelector("h2").textContent = found.recorded ? "Channels in the first file" : "First lines";
     fill(lines, found.lines.map((text, i) => `${String(i + 1).padStart(3)}  ${text}\n`));
     lines.setAttribute("aria-label", `first lines of ${found.file ?? "no file"}`);
     view.form = found.form;
@@ -165,11 +177,12 @@ export function open(root, app) {
     const why = (key) => (form.why[key] ? h("small", { class: "muted" }, form.why[key]) : null);
     fill(
       once,
-      ofFrfs() ? null : h("div", {}, field("Sampling rate", input(form, "rate", { id: "import-rate" }), "Hz"), why("rate"), why("time_column")),
-      ofFrfs() ? null : field("Cut records to", input(form, "samples", { placeholder: "all" }), "samples"),
+      ofFrfs() && !form.mat ? null : h("div", {}, field("Sampling rate", input(form, "rate", { id: "import-rate" }), "Hz"), why("rate"), why("time_column")),
+      ofFrfs() && !form.mat ? null : field(form.mat ? "Samples transformed" : "Cut records to", input(form, "samples", { placeholder: form.mat ? "" : "all" }), "samples"),
       field("Decay of an exponential window", input(form, "decay", { placeholder: "0" }), "1/s"),
       h("div", {}, field("Nodes from file names", input(form, "match", { id: "import-node-names", size: 16, placeholder: "P{node}_*.csv" })), why("match")),
-      field(
+      form.mat ? MAT.map(([key, label, options]) => h("div", {}, field(label, options ? choice(form.mat, key, options, { id: `import-${key}` }) : input(form.mat, key, { id: `import-${key}`, size: 24 })), why(key))) : null,
+      form.mat ? null : field(
         "These are the nodes of",
         select(belongs, of < 0 ? "" : String(of), (value) => {
           form.match_column = value === "" ? "" : form.rows[Number(value)].key;
@@ -179,9 +192,11 @@ export function open(root, app) {
     );
   }
 
-  const ofFrfs = () => view.form.rows.some((row) => row.role === "frequency");
+  const ofFrfs = () => Boolean(view.form.mat) || view.form.rows.some((row) => row.role === "frequency");
 
   function rowed() {
+    columns.hidden = Boolean(view.form.mat);
+    if (view.form.mat) return;
     const frfs = ofFrfs();
     const names = ["column", "holds", "first numbers", "unit", "scale"].concat(
       frfs ? ["part", "measured at", "direction", "hit at", "direction hit"] : ["node", "direction"],
@@ -226,7 +241,6 @@ export function open(root, app) {
       row.why.join("; "),
     ];
   }
-
 
 
   async function checked() {

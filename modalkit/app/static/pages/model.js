@@ -347,7 +347,7 @@ export function open(root, app) {
     const rows = [...found.pairs, ...every.filter((u) => !found.pairs.some((p) => p.test_mode === u.test_mode))].sort(
       (a, b) => a.test_mode - b.test_mode,
     );
-    const columns = ["test", "test [Hz]", "model [Hz]", "error [%]", "study's [%]", "MAC", "partner"].map(
+    const columns = ["test", "test [Hz]", "model [Hz]", "error [%]", "as stated [%]", "MAC", "partner"].map(
       (name, i) => ({ name, number: i < 6 }),
     );
     fill(

@@ -94,13 +94,15 @@ export function open(root, app) {
       view.typed = typed; // refused: to be mended where it was typed
       controlled();
     };
-    const bandNow = () => banded({ low: number(low), high: number(high) });
+    const rounded = (value) => String(Number(value.toPrecision(6)));
+    const limited = (input, value) => (input.value === rounded(value) ? value : number(input)); // untouched: all digits
+    const bandNow = () => banded({ low: limited(low, page.band[0]), high: limited(high, page.band[1]) });
     const orderNow = () => app.act("order", { order: order.value ? Number(order.value) : null });
     const limit = (end, value) =>
       h("input", {
         type: "text",
         inputmode: "decimal",
-        value: view.typed[end] ?? String(value),
+        value: view.typed[end] ?? rounded(value),
         size: 7,
         "aria-label": `${end}est frequency of the band`,
         id: `band-${end}`,
@@ -141,11 +143,11 @@ export function open(root, app) {
         { class: "row" },
         field("Band", h("span", {}, low, " to ", high), "Hz"),
         button("Set", bandNow, { id: "band-set" }),
-        page.band_stated ? button("As the force reaches", () => banded({})) : null,
+        page.band_stated ? button("Band of the force", () => banded({})) : null,
         field("Order", order),
         button("Set", orderNow, { id: "order-set" }),
         field(
-          "Behind it",
+          "Background curve",
           select(
             [
               ["sum", "sum of |H|"],
@@ -285,7 +287,7 @@ export function open(root, app) {
       { name: "damping [%]", number: true },
       { name: "σ [%]", number: true },
       { name: "MPC", number: true },
-      { name: "where from", wide: true },
+      { name: "origin", wide: true },
       ...(view.page.identified ? [{ name: "change" }] : []),
     ];
     const percent = (v) => (v === null ? null : 100 * v);

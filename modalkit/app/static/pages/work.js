@@ -37,7 +37,7 @@ export function worker(app, kind, { start, again, done }) {
         ? button("Stop", () => app.change("stop"), { id: `stop-${kind}`, class: "danger" })
         : null,
       running && job.kind === kind && job.remaining_s !== null
-        ? h("progress", { max: String(job.seconds + job.remaining_s), value: String(job.seconds), "aria-label": `${kind}: how far it is` })
+        ? h("progress", { max: String(job.seconds + job.remaining_s), value: String(job.seconds), "aria-label": `${kind}: progress` })
         : null,
       running
         ? h(

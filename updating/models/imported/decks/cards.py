@@ -104,7 +104,9 @@ def read_cards(path: Path) -> Cards:
     for line, here in deck_lines(path):
         if not line.startswith("*"):
             if not head:
-                raise StudyError(f"{here}: {line[:40]!r} stands before any card; is this a CalculiX deck?")
+                raise StudyError(
+                    f"{here}: {line[:40]!r} comes before the first card; is this a CalculiX deck?"
+                )
             lines.append(line)
             continue
         if is_include(line):

@@ -142,7 +142,7 @@ def _thickness(mesh: Mesh, name: str, kind: str, elements: frozenset[int], lengt
     cards, column = SECTION_OF[kind]
     own = [s for s in mesh.sections if s.card.name in cards and s.elements & elements]
     if not own:
-        raise StudyError(f"{name}: no element of it has a {' or '.join(cards)}; it has no {kind} to turn")
+        raise StudyError(f"{name}: no element of it has a {' or '.join(cards)}; it has no {kind} to change")
     nominal = own[0].card.number(0, column)
 
     def changed(deck: Cards, value: float) -> Cards:
@@ -177,7 +177,7 @@ def _point(mesh: Mesh, name: str, head: str, kind: str, unit: float) -> DeckPara
         known = ", ".join(one.options.get("ELSET", "") for one in cards) or "none"
         raise StudyError(f"{name}: no {wanted}, ELSET={head} in {mesh.source}; there are: {known}")
     if any("NONLINEAR" in one.options for one in own):
-        raise StudyError(f"{name}: {own[0].where}: a nonlinear spring has no one stiffness to turn")
+        raise StudyError(f"{name}: {own[0].where}: a nonlinear spring has no single stiffness to change")
     line = len(own[0].lines) - 1 if kind == "stiffness" else 0
     nominal = own[0].number(line, 0)
 

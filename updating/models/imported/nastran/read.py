@@ -57,7 +57,7 @@ def read_output(path: Path, kind: str, name: str | None = None) -> Sparse:
     except ValueError as error:
         raise _damaged(path, error) from error
     if not np.isfinite(matrix.data).all():
-        raise StudyError(f"{path}: an entry of {wanted} is not finite; write the file anew")
+        raise StudyError(f"{path}: an entry of {wanted} is not finite; write the file again")
     matrix.eliminate_zeros()
     return matrix
 
@@ -74,5 +74,5 @@ def _contents(raw: bytes, path: Path) -> list[Matrix]:
 def _damaged(path: Path, error: Exception) -> StudyError:
     module = "OUTPUT2" if path.suffix.lower() == ".op2" else "OUTPUT4"
     return StudyError(
-        f"{path}: not a whole file of {module} ({' '.join(str(error).split())[:200]}); write it anew"
+        f"{path}: not a whole file of {module} ({' '.join(str(error).split())[:200]}); write it again"
     )
