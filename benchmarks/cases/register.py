@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cases import on_rig, sensors, storeys
+from cases.in_water import Scene, in_water
 from cases.trial import Case
 
 CASES: dict[str, Case] = {
@@ -30,6 +31,18 @@ CASES: dict[str, Case] = {
         Case("foundation", "named axial_load", on_rig.foundation),
         Case("heavy_sensor", "named lumped_mass, over 99.9 %", on_rig.heavy_sensor),
         Case("frame_stiffer", "0 of 8 right", storeys.storeys(1, 1.1, 1.4), each=4),
+        Case("water", "1042 (1009 to 1082) in place of 998 kg/m3", in_water(Scene())),
+        Case("water_hits", "1042 (1009 to 1082)", in_water(Scene(hits=True))),
+        Case("water_no_wall", "", in_water(Scene(wall=False))),
+        Case("water_even", "1058 (1034 to 1087)", in_water(Scene(even=True))),
+        Case("water_tank", "", in_water(Scene(tank=True))),
+        Case("water_stated", "", in_water(Scene(tank=True, stated=True))),
+        Case("water_baseline", "", in_water(Scene(baseline=True))),
+        Case("water_soft_clamp", "unknown", in_water(Scene(soft=True))),
+        Case("water_soft_baseline", "", in_water(Scene(soft=True, baseline=True))),
+        Case("water_oil", "unknown", in_water(Scene(oil=True))),
+        Case("water_free", "", in_water(Scene(clamped=False))),
+        Case("water_beam", "", in_water(Scene(kind="beam", aspect=(8.0, 14.0)))),
     )
 }
 """First those of theory, likelihood and sets of causes, up to ``frame_softer``; then those of too narrow sketches."""
