@@ -224,6 +224,22 @@ def test_what_the_fluid_adds_in_the_first_mode_is_what_its_frequency_tells(spec)
     assert ratio == pytest.approx((dry / wet) ** 2 - 1, rel=0.02)
 
 
+@pytest.mark.parametrize(
+    ("around", "doubted"),
+    [
+        (Environment(), True),
+        (Environment(free_surface=0.2, bottom=0.1), True),
+        (Environment(998.0), False),
+        (Environment(walls=(0.0, INF, -INF, INF)), False),
+    ],
+)
+def test_the_level_of_the_added_mass_is_in_doubt_where_its_surroundings_are_not_stated(
+    around: Environment, doubted: bool
+) -> None:
+    density = FluidAddedMass().parameters(Predictor(BEAM, blank(POINTS), around))[0]
+    assert (density.scale_doubt > 0) is doubted
+
+
 def test_a_clamp_is_a_wall_in_part() -> None:
     """Half of it adds the mean of both; a study that states the walls leaves nothing open."""
     predictor, fluid = Predictor(BEAM, blank(POINTS)), FluidAddedMass()
