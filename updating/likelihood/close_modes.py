@@ -84,6 +84,33 @@ class CloseModes(Nuisances):
         return np.stack([i, j])[:, shows], angle[shows]
 
 
+def turned_by_doubt(now: Prediction, doubt: FloatArray, bare: BoolArray) -> FloatArray:
+    """Return the variance of constants whose modes turn into each other by an error of what is in the model.
+
+    A fluid that weighs a few per cent more on one mode than on the next mixes modes that it has brought together.
+
+    Parameters
+    ----------
+    now : Prediction
+        The modes.
+    doubt : (n_modes,) array
+        How far the error leaves each frequency off, relative (1 sigma) [-].
+    bare : (n_frf,) bool array
+        Where a constant is a shape and has no point that is hit.
+
+    Returns
+    -------
+    (n_frf, n_modes) array [1/kg^2]
+    """
+    f, g = now.frequency[:, None], now.frequency
+    angle = turn(f, g, np.sqrt((doubt[:, None] ** 2 + doubt**2) / 2))
+    angle = np.where(np.eye(len(g), dtype=bool) | (angle < LEAST_TURN), 0.0, angle)
+    own = now.gain[:, :, None], now.seen[:, :, None], now.hit[:, :, None]
+    hit = np.where(bare[:, None], 0.0, now.hit)
+    change = own[0] * (now.seen[:, None] * own[2] + own[1] * hit[:, None])
+    return np.asarray(np.sum((angle * change) ** 2, axis=2))
+
+
 def turn(f: FloatArray, g: FloatArray, scatter: FloatArray) -> FloatArray:
     """Return how much modes of f [Hz] take up of others of g [Hz] whose frequencies scatter so far, relative [rad]."""
     far = np.abs(g**2 - f**2)

@@ -9,7 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
-from updating.likelihood.close_modes import CloseModes
+from updating.likelihood.close_modes import CloseModes, turned_by_doubt
 from updating.likelihood.comparison import Block
 from updating.likelihood.hit_scatter import level_errors, own_variance
 from updating.likelihood.missed_modes import MissedModes
@@ -106,6 +106,8 @@ class Constants(Quantity):
         uneven = None
         if view.doubt.fidelity:
             uneven, louder = self._idealised(predicted, view.doubt.fidelity)
+            doubt = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
+            uneven = uneven + turned_by_doubt(now, doubt, test.hit < 0) * level**2
             variance = variance + uneven
             own.append(louder)
         gain = self._gains(predicted)
