@@ -44,11 +44,11 @@ FARTHEST = 3.0
 """Largest distance of surface and bottom, over the longer side [-]: of a tank that holds the structure; three sides are
 as good as none, 0.3 % of the added mass of a square plate. Doubled: deep water gains a seventh of the prior."""
 
-LEVEL_DOUBT = 0.04
+LEVEL_DOUBT = 0.05
 """How far the level of the added mass may be off, in all modes alike, where neither density nor walls are stated, 1
-sigma [-]. Side walls half a width away add 0 to 5 %, rounded edges take off some of what thickness adds (2 to 5 %), of
-plates measured in stated tanks it is 3 % off, and lattices of 40 x 24 even panels are 4 to 9 % heavy. All modes share
-it, so no number of them makes up for it. Doubled: a density is known to a sixth."""
+sigma [-]. Side walls half a width away add 0 to 5 %, edges that are no square ones take off some of the 2 to 5 % that
+thickness adds, of plates measured in stated tanks it is 3 % off, lattices of 40 x 24 even panels are 4 to 9 % heavy.
+All modes share it, so no number of them makes up for it. Doubled: a density is known to a fifth."""
 
 DEEP, NEAR = 0.8, 0.3
 """Prior quantiles of distances to start a search from: two and a third of a plate's shorter sides [-]."""
