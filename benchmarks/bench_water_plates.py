@@ -118,13 +118,28 @@ def by_effect(plate: Plate, one: Setting) -> tuple[Array, Array]:
     """Return the same by the library: its own elements, its own flow."""
     elements = [int(np.clip(round(20 * side / WIDTH), 16, 40)) for side in (plate.length, plate.width)]
     spec = Spec(
-        "plate", plate.length, plate.width, plate.thickness, (elements[0], elements[1]),
-        ("x0",) if plate.clamped else (), "kirchhoff", Material(plate.E, plate.density, plate.poisson),
-    )  # fmt: skip
+        "plate",
+        length=plate.length,
+        width=plate.width,
+        thickness=plate.thickness,
+        elements=(elements[0], elements[1]),
+        clamped=("x0",) if plate.clamped else (),
+        theory="kirchhoff",
+        material=Material(plate.E, plate.density, plate.poisson),
+    )
     unit, place = np.ones((1, 1)), np.array([[plate.length, plate.width]])
     nothing = Measured(
-        *(np.array([100.0]), np.array([0.1]), np.array([0.01]), np.array([0.001])),
-        *(place, (1,), np.zeros(1, dtype=int), np.zeros(1, dtype=int), unit, unit, True),
+        frequency=np.array([100.0]),
+        frequency_sigma=np.array([0.1]),
+        damping=np.array([0.01]),
+        damping_sigma=np.array([0.001]),
+        points=place,
+        nodes=(1,),
+        seen=np.zeros(1, dtype=int),
+        hit=np.zeros(1, dtype=int),
+        constants=unit,
+        constants_sigma=unit,
+        absolute=True,
     )
     model = Predictor(spec, nothing, one.around)
     state = FluidAddedMass().state(model, {"fluid_density": WATER})

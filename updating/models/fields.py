@@ -298,8 +298,8 @@ NARROWER = 0.7
 """So narrow is an element along an edge, relative to the others at most [-]: less of a difference does nothing."""
 
 NARROWEST = 1 / 300
-"""So narrow may an element along an edge be, relative to the side [-]: polynomials in axes of the plate cannot be told
-apart on narrower ones (one of 1/500 was singular), and of such thin plates shear takes some 0.2 % at most."""
+"""So narrow may an element along an edge be, relative to the side [-]: polynomials in axes of the plate cannot be
+separated on narrower ones (one of 1/500 was singular), and of such thin plates shear takes some 0.2 % at most."""
 
 
 def mindlin_fields(length: float, width: float, elements: tuple[int, int], thickness: float) -> ShearFields:

@@ -49,8 +49,8 @@ def draw_where(
         draw_structure(axes, diagnosis, case, width=width, height=height)
         return
     plain = [one for one in chart.series if one.kind != "line" and one.name != "place found"]
-    told = [replace(one, name="") for one in chart.series if one not in plain]
-    chart = replace(chart, series=[*plain, *told])
+    others = [replace(one, name="") for one in chart.series if one not in plain]
+    chart = replace(chart, series=[*plain, *others])
     text, found = _place(diagnosis, plate=case is not None and case.spec.kind == "plate")
     weight, colour = ("bold", ORANGE) if found else ("normal", MUTED)
     axes.text(0.0, height - 0.18, text, fontsize=TEXT, fontweight=weight, color=colour)

@@ -25,7 +25,7 @@ SORTS = {
     "left out": ("left out", "orange"),
     "outside": ("not in the library", "red"),
 }
-"""Kinds of what is hidden: what a key says of them, and their colours."""
+"""Kinds of what is hidden: what a key states of them, and their colours."""
 
 WHOLE, EDGE = 100.0, 102.0
 """All of something, and where an axis ends on which it is to be seen [%]."""
