@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -92,7 +92,6 @@ def diagnosis_of(
     where = locate(*one, verdict=verdict, whole=found, rules=rules)
     certain = levels(*one, where, verdict, sets, other, whole=found, rules=rules)
     steps.begin("choosing the next test")
-    notes = (*searched.warnings, *on_rules(rules), *on_search(problem, found, sets), *fit_notes)
     return Diagnosis(
         title=" and ".join(titles),
         significant=significant,
@@ -104,7 +103,7 @@ def diagnosis_of(
         sets=sets,
         ranking=rank(problem, titles, found, rules=rules),
         next_test=propose(problem, found, sets, verdict, certain.mechanisms, separated=rules.separated_sigma),
-        warnings=tuple(dict.fromkeys(notes)),
+        warnings=_warnings(searched, sets, rules, fit_notes),
         not_examined=found.not_examined,
         comparable=_comparable(problem),
         remainder=left if significant or found.empty.explanation.candidate.outliers else None,
@@ -119,6 +118,22 @@ def diagnosis_of(
         set_aside=most_probable(problem, titles, found),
         beneath=_beneath(problem) if found.empty.explanation.candidate.fuller else 0.0,
     )
+
+
+def _warnings(
+    searched: SearchedCase,
+    sets: tuple[tuple[str, ...], ...],
+    rules: DecisionRules,
+    fit_notes: Sequence[str],
+) -> tuple[str, ...]:
+    """Return what limits the answer, each once: of the test, the rules, the search and the fit."""
+    notes = (
+        *searched.warnings,
+        *on_rules(rules),
+        *on_search(searched.problem, searched.found, sets),
+        *fit_notes,
+    )
+    return tuple(dict.fromkeys(notes))
 
 
 def _beneath(problem: DiagnosisProblem) -> float:

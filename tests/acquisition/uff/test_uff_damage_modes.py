@@ -101,7 +101,7 @@ def test_exchanged_lines_of_a_shape_are_not_silent(tmp_path, reread, rng):
                 assert not silent(before, reread(b"\n".join(changed))), (a, b)
 
 
-def test_what_is_not_used_is_said_in_one_line(drawn, reread):
+def test_what_is_not_used_is_stated_in_one_line(drawn, reread):
     content = reread(drawn + table(161, "x") + table(161, "y") + table(17, "z"))
     assert content.warnings == ("x.uff: not used: 2 data sets 161; 1 data sets 17",)
 

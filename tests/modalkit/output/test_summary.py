@@ -331,7 +331,7 @@ def test_with_one_mode_nothing_is_held_out() -> None:
     assert numbers(lines(NAMED, shrink=single)["Closes"]) == ["5 %", "0.1 %", "0.05 %"]
 
 
-def test_all_data_together_are_told_in_standard_deviations() -> None:
+def test_all_data_together_are_stated_in_standard_deviations() -> None:
     combined = replace(NAMED.shrink, metric="combined", before=1200.0, after=90.0)
     assert numbers(lines(NAMED, shrink=combined)["Closes"])[:2] == ["12 sigma", "0.9 sigma"]
 

@@ -55,7 +55,7 @@ def test_the_answer_is_marked_with_its_interval(tmp_path: Path) -> None:
     assert any("mass 12.1 g (11.5 to 12.6)" in r and "97 %" in r and "lumped mass" in r for r in marked)
 
 
-def test_errors_of_all_data_are_told_in_standard_deviations(tmp_path: Path) -> None:
+def test_errors_of_all_data_are_stated_in_standard_deviations(tmp_path: Path) -> None:
     made = complete(diagnosis_with("beam", "named"))
     shrink = Shrink(
         metric="combined",

@@ -17,7 +17,7 @@ from updating.effects import accepted_state
 from updating.models import PointMass
 
 
-def test_a_fluid_that_is_told_is_not_searched_for() -> None:
+def test_a_fluid_that_is_stated_is_not_searched_for() -> None:
     stated = replace(LOOK["beam"], environment=Environment(998.0, free_surface=0.2, bottom=0.1))
     parameter, wall = LIBRARY["fluid_added_mass"].parameters(stated)
     assert wall.name == "wall"
