@@ -33,7 +33,11 @@ class CloseModes(Nuisances):
 
     def columns(self, now: Prediction, level: FloatArray) -> FloatArray:
         """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-]."""
-        (first, second), angle = self._pairs
+        return self._turned(now, level, *self._pairs)
+
+    def _turned(self, now: Prediction, level: FloatArray, pairs: IntArray, angle: FloatArray) -> FloatArray:
+        """Return the change of the constants as pairs (2, k) of modes turn by an angle (k,) [rad]."""
+        first, second = pairs
         columns = np.zeros((*level.shape, len(angle)))
         if not len(angle):
             return columns.reshape(level.size, 0)
@@ -44,8 +48,22 @@ class CloseModes(Nuisances):
         i, j = first[both], second[both]
         columns[:, j, both] = -angle[both] * level[:, j] * self._change(now, j, now.seen[:, i], now.hit[:, i])
         # shapes have no sign of their own: a column that leaps would be no smooth function of the state
-        alike = np.sum(change * self._nominal_change, axis=0)
+        seen, hit = self._with_missed(self.setting.nominal)
+        before = self._change(self.setting.nominal, first, seen[:, second], hit[:, second])
+        alike = np.sum(change * before, axis=0)
         return np.asarray(np.where(alike < 0, -1.0, 1.0) * columns).reshape(level.size, len(angle))
+
+    def turned_by_doubt(self, now: Prediction, level: FloatArray, fidelity: float) -> FloatArray:
+        """Return what an error of the idealisation, that differs from mode to mode, changes (n_frf n_modes, k) [-].
+
+        A fluid that weighs a few per cent more on one mode than on the next mixes modes that it has brought together.
+        Each pair turns as a whole: as variances of single constants such errors were worth hundreds of determinants.
+        What a change that shifts both modes adds between them is at most the geometric mean of what it adds to each.
+        """
+        i, j = self._neighbours
+        shift = fidelity * np.log(now.frequency / self.setting.nominal.frequency)
+        doubt = np.sqrt(np.abs(shift[i] * shift[j]))
+        return self._turned(now, level, np.stack([i, j]), turn(now.frequency[i], now.frequency[j], doubt))
 
     def _change(self, now: Prediction, mode: IntArray, seen: FloatArray, hit: FloatArray) -> FloatArray:
         """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg]."""
@@ -58,11 +76,10 @@ class CloseModes(Nuisances):
         return np.hstack([now.seen, lost.seen]), np.hstack([now.hit, lost.hit])
 
     @cached_property
-    def _nominal_change(self) -> FloatArray:
-        """What the nominal constants of the first mode of each pair change by, (n_frf, k) [1/kg]."""
-        (first, second), _ = self._pairs
-        seen, hit = self._with_missed(self.setting.nominal)
-        return self._change(self.setting.nominal, first, seen[:, second], hit[:, second])
+    def _neighbours(self) -> tuple[IntArray, IntArray]:
+        """Modes and the next ones in frequency, (k,) each."""
+        order = np.argsort(self.setting.measured.frequency)
+        return order[:-1], order[1:]
 
     @cached_property
     def _pairs(self) -> tuple[IntArray, FloatArray]:
@@ -82,33 +99,6 @@ class CloseModes(Nuisances):
         angle = turn(f, g, np.sqrt(mean))
         shows = angle > LEAST_TURN
         return np.stack([i, j])[:, shows], angle[shows]
-
-
-def turned_by_doubt(now: Prediction, doubt: FloatArray, bare: BoolArray) -> FloatArray:
-    """Return the variance of constants whose modes turn into each other by an error of what is in the model.
-
-    A fluid that weighs a few per cent more on one mode than on the next mixes modes that it has brought together.
-
-    Parameters
-    ----------
-    now : Prediction
-        The modes.
-    doubt : (n_modes,) array
-        How far the error leaves each frequency off, relative (1 sigma) [-].
-    bare : (n_frf,) bool array
-        Where a constant is a shape and has no point that is hit.
-
-    Returns
-    -------
-    (n_frf, n_modes) array [1/kg^2]
-    """
-    f, g = now.frequency[:, None], now.frequency
-    angle = turn(f, g, np.sqrt((doubt[:, None] ** 2 + doubt**2) / 2))
-    angle = np.where(np.eye(len(g), dtype=bool) | (angle < LEAST_TURN), 0.0, angle)
-    own = now.gain[:, :, None], now.seen[:, :, None], now.hit[:, :, None]
-    hit = np.where(bare[:, None], 0.0, now.hit)
-    change = own[0] * (now.seen[:, None] * own[2] + own[1] * hit[:, None])
-    return np.asarray(np.sum((angle * change) ** 2, axis=2))
 
 
 def turn(f: FloatArray, g: FloatArray, scatter: FloatArray) -> FloatArray:

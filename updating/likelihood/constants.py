@@ -9,7 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
-from updating.likelihood.close_modes import CloseModes, turned_by_doubt
+from updating.likelihood.close_modes import CloseModes
 from updating.likelihood.comparison import Block
 from updating.likelihood.hit_scatter import level_errors, own_variance
 from updating.likelihood.missed_modes import MissedModes
@@ -17,6 +17,7 @@ from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
 from updating.prediction.misplaced import best_levels
+from updating.prediction.prediction import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
     DELAY_FIT_ERROR,
@@ -105,11 +106,9 @@ class Constants(Quantity):
         ]
         uneven = None
         if view.doubt.fidelity:
-            uneven, louder = self._idealised(predicted, view.doubt.fidelity)
-            doubt = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
-            uneven = uneven + turned_by_doubt(now, doubt, test.hit < 0) * level**2
+            uneven, louder = self._idealised(now, predicted, view.doubt.fidelity)
             variance = variance + uneven
-            own.append(louder)
+            own += [louder, self._close_modes.turned_by_doubt(now, level, view.doubt.fidelity)]
         gain = self._gains(predicted)
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))
@@ -183,16 +182,19 @@ class Constants(Quantity):
         late = 2 * np.pi * self.setting.measured.frequency * abs(delay)
         return np.asarray(DELAY_FIT_ERROR * np.minimum(late, np.pi))
 
-    def _idealised(self, predicted: FloatArray, fidelity: float) -> tuple[FloatArray, FloatArray]:
+    def _idealised(
+        self, now: Prediction, predicted: FloatArray, fidelity: float
+    ) -> tuple[FloatArray, FloatArray]:
         """Return variance and a column of doubt by how far a candidate's idealisation may be off.
 
-        A change of the modes' levels errs as a whole, what is no mere change of level point by point.
+        A change of the modes' levels errs as a whole, what is no mere change of level point by point. Gains of the
+        measurement chain are no idealisation: where they counted, a gain of 0.12 was within a roving sensor's doubt.
         """
-        before = self._nominal
-        share = best_levels(predicted, before)
-        return (fidelity * (predicted - share * before)) ** 2, (fidelity * (share - 1) * before).reshape(
-            -1, 1
-        )
+        chain = now.gain / self.setting.nominal.gain
+        structure, before = predicted / chain, self._nominal
+        share = best_levels(structure, before)
+        uneven = fidelity * chain * (structure - share * before)
+        return uneven**2, (fidelity * chain * (share - 1) * before).reshape(-1, 1)
 
     @cached_property
     def _nominal(self) -> FloatArray:

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 import skfem
 from scipy import sparse
+from skfem.element import DiscreteField
 
 from acquisition.arrays import FloatArray, IntArray
 
@@ -43,6 +44,9 @@ class Component:
 
     def sampled(self, n_dofs: int) -> dict[str, Sparse]:
         """Return the fields at the quadrature points, each (n_points, n_dofs)."""
+        if "w" in self.names:
+            points = np.asarray(self.basis.global_coordinates())
+            return self.hermite(points.reshape(len(points), -1).T, n_dofs, self.names)
         cells = np.repeat(np.arange(self.basis.nelems), self.basis.X.shape[1])
         values = [self.basis.basis[i][0] for i in range(self.basis.Nbfun)]
         return {n: self._matrix(values, d, cells, n_dofs) for n, d in self.names.items()}
@@ -228,7 +232,7 @@ class ShearFields(Fields):
     """
 
     def _sampled(self) -> dict[str, Sparse]:
-        thin = self.components[0].hermite(self.points, self.n_dofs, PLATE_NAMES)
+        thin = self.components[0].sampled(self.n_dofs)
         strains: dict[str, Sparse] = {}
         for axis, component in zip("xy", self.components[1:], strict=True):
             slope = self.components[0].at(component.basis.doflocs.T, self.n_dofs)[f"w{axis}"]
@@ -285,7 +289,17 @@ def plate_fields(length: float, width: float, elements: tuple[int, int]) -> Fiel
     mesh = skfem.MeshQuad.init_tensor(
         *(_lines(*side) for side in zip((length, width), elements, strict=True))
     )
-    return Fields((Component(skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6), 0, PLATE_NAMES),), 2)
+    return Fields((Component(skfem.Basis(mesh, _Numbered(), intorder=6), 0, PLATE_NAMES),), 2)
+
+
+class _Numbered(skfem.ElementQuadBFS):  # type: ignore[misc]
+    """Degrees of freedom of bicubic rectangles, whose values are :meth:`Component.hermite`'s.
+
+    The library finds its polynomials as the inverse of a matrix that is singular on elements of 1/500 of the side.
+    """
+
+    def gbasis(self, mapping: Any, X: FloatArray, i: int, tind: Any = None) -> tuple[Any, ...]:
+        return (DiscreteField(value=np.zeros(mapping.detDF(X, tind).shape)),)
 
 
 LAYERS = (0.7, 0.25)
@@ -297,10 +311,6 @@ elements of 0.7 h none leaves 0.03 % and 0.4 % of the shapes of modes 2 % apart,
 NARROWER = 0.7
 """So narrow is an element along an edge, relative to the others at most [-]: less of a difference does nothing."""
 
-NARROWEST = 1 / 300
-"""So narrow may an element along an edge be, relative to the side [-]: polynomials in axes of the plate cannot be
-separated on narrower ones (one of 1/500 was singular), and of such thin plates shear takes some 0.2 % at most."""
-
 
 def mindlin_fields(length: float, width: float, elements: tuple[int, int], thickness: float) -> ShearFields:
     """Bicubic displacement w, biquadratic rotations of the section about both axes, narrow elements at the edges."""
@@ -308,7 +318,7 @@ def mindlin_fields(length: float, width: float, elements: tuple[int, int], thick
     mesh = skfem.MeshQuad.init_tensor(
         *(_lines(*side, [layer * thickness for layer in LAYERS]) for side in sides)
     )
-    deflection = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
+    deflection = skfem.Basis(mesh, _Numbered(), intorder=6)
     rotation = skfem.Basis(mesh, skfem.ElementQuad2(), intorder=6)
     first, count = int(deflection.N), int(rotation.N)
     turns = [
@@ -321,7 +331,7 @@ def mindlin_fields(length: float, width: float, elements: tuple[int, int], thick
 def _lines(size: float, elements: int, layers: Sequence[float] = ()) -> FloatArray:
     """Return where elements end along a side, at both ends narrow ones of the first width that fits in [m]."""
     even = np.linspace(0.0, size, elements + 1)
-    fitting = [one for one in layers if NARROWEST * size < one < NARROWER * size / elements][:1]
+    fitting = [one for one in layers if one < NARROWER * size / elements][:1]
     return np.unique(np.concatenate([even, *([layer, size - layer] for layer in fitting)]))
 
 

@@ -239,7 +239,7 @@ def test_an_untouched_store_passes_and_says_what_was_in_flight(
     assert ended.value.code == 0
     message = capsys.readouterr().out
     assert "2 trials, each opened with the commitment published before it" in message
-    assert "ended before: 2" in message
+    assert "because the run stopped: 2" in message
 
 
 RUN = """

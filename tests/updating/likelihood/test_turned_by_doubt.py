@@ -6,37 +6,58 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import eigh
-from updating_cases import PLATE, blank
+from updating_cases import PLATE, blank, exactly
 
-from updating import Predictor
-from updating.likelihood.close_modes import turned_by_doubt
+from acquisition.arrays import FloatArray
+from updating import Case, Predictor, Tolerances
+from updating.diagnosis.diagnose import pose
+from updating.likelihood.base import Setting
+from updating.likelihood.close_modes import CloseModes
 
 POINTS = np.array([(x, y) for x in np.linspace(0.1, 0.376, 4) for y in (0.0, 0.07, 0.2)])
+SHIFT, FIDELITY, COUNT = 0.2, 0.01, 6
 
 
-def test_shapes_scatter_as_those_of_matrices_with_an_error() -> None:
-    """Against drawn errors of a mass matrix: of the two modes nearest to each other, within a third."""
-    predictor = Predictor(replace(PLATE, elements=(12, 8)), blank(POINTS))
-    now = predictor.predict(count=6)
-    doubt = 0.01
-    rng = np.random.default_rng(1)
-    drawn = []
-    for _ in range(400):
-        error = rng.standard_normal((6, 6))
-        error = 2 * doubt * np.triu(error) + 2 * doubt * np.triu(error, 1).T
-        _, mixed = eigh(np.diag(now.frequency**2), np.eye(6) + error)
-        mixed = mixed / np.diag(mixed)  # the turn alone: levels are another doubt
-        drawn.append(mixed - np.eye(6))
-    seen = np.einsum("nim,pi->npm", np.array(drawn), now.seen)
-    own = now.gain * (seen * now.hit + now.seen * np.einsum("nim,pi->npm", np.array(drawn), now.hit))
-    expected = np.sqrt(
-        np.sum(turned_by_doubt(now, np.full(6, doubt), np.zeros(len(now.seen), dtype=bool)), axis=0)
+def setting() -> Setting:
+    plate = replace(PLATE, elements=(12, 8))
+    predictor = Predictor(plate, blank(POINTS))
+    measured = exactly(predictor, predictor.predict(count=COUNT), sigma=1e-6, repeatability=1e-4)
+    return pose(Case("a plate", plate, measured, tolerances=Tolerances({"E": 0.01})))[0].setting
+
+
+def turned(setting: Setting, shift: FloatArray, gain: float = 1.0) -> FloatArray:
+    """Return the columns (n_frf, n_modes, k) where an effect has shifted ln f by ``shift``."""
+    now = setting.nominal
+    close = CloseModes(
+        replace(setting, nominal=replace(now, frequency=now.frequency * np.exp(-shift))), np.zeros(COUNT)
     )
-    close = int(np.argmin(np.diff(np.log(now.frequency))))
-    found = np.sqrt(np.sum(np.mean(own**2, axis=0), axis=0))
-    np.testing.assert_allclose(expected[close : close + 2], found[close : close + 2], rtol=1 / 3)
+    level = np.full_like(now.constants, gain)
+    return close.turned_by_doubt(now, level, FIDELITY).reshape(*now.constants.shape, -1)
 
 
-def test_no_doubt_turns_nothing() -> None:
-    now = Predictor(replace(PLATE, elements=(12, 8)), blank(POINTS)).predict(count=4)
-    assert not turned_by_doubt(now, np.zeros(4), np.zeros(len(now.seen), dtype=bool)).any()
+def test_the_nearest_modes_turn_as_those_of_matrices_with_an_error_between_them() -> None:
+    """Against a solved eigenproblem whose stiffness matrix errs between the two by one standard deviation."""
+    posed = setting()
+    now = posed.nominal
+    close = int(np.argmin(np.diff(now.frequency)))
+    pair = [close, close + 1]
+    stiffness = np.diag(now.frequency**2)
+    stiffness[pair, pair[::-1]] = 2 * FIDELITY * SHIFT * np.prod(now.frequency[pair])
+    _, mixed = eigh(stiffness)
+    mixed = mixed / np.diag(mixed) - np.eye(COUNT)  # the turn alone: levels are another doubt
+    moved = now.gain * (now.seen @ mixed * now.hit + now.seen * (now.hit @ mixed))
+    expected = np.sqrt(np.mean(moved[:, pair] ** 2, axis=0))
+    found = np.sqrt(np.mean(turned(posed, np.full(COUNT, SHIFT))[:, pair, close] ** 2, axis=0))
+    np.testing.assert_allclose(found, expected, rtol=0.1)
+
+
+def test_a_mode_that_an_effect_leaves_alone_turns_into_none() -> None:
+    """A mass at a node has no element between that mode and another one."""
+    shift = np.full(COUNT, SHIFT)
+    shift[2] = 0.0
+    assert not turned(setting(), shift)[:, 2].any()
+
+
+def test_columns_have_the_level_of_the_constants() -> None:
+    posed, shift = setting(), np.full(COUNT, SHIFT)
+    np.testing.assert_allclose(turned(posed, shift, gain=0.1), 0.1 * turned(posed, shift))
