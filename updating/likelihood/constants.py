@@ -16,6 +16,7 @@ from updating.likelihood.missed_modes import MissedModes
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
+from updating.likelihood.wide_beams import WideBeams
 from updating.prediction.misplaced import best_levels
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
@@ -88,6 +89,10 @@ class Constants(Quantity):
     def _missed_modes(self) -> MissedModes:
         return MissedModes(self.setting)
 
+    @cached_property
+    def _wide_beams(self) -> WideBeams:
+        return WideBeams(self.setting)
+
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, names = self.setting.measured, view.now, len(self.setting.names)
@@ -95,6 +100,7 @@ class Constants(Quantity):
         level = self._level(constants, view)
         predicted, by = constants * level, by * level[:, :, None]
         variance = self._known_errors if missed is None else self._known_errors + missed * level**2
+        variance = variance + self._wide_beams.variance(level)
         if view.state.delay:
             variance = variance + self._late(view.state.delay) ** 2
         by_place = self.places.columns(now, level, self._measured)
@@ -103,6 +109,7 @@ class Constants(Quantity):
             self._nodes.columns(now, level),
             self._close_modes.columns(now, level),
             self._missed_modes.columns(now, level),
+            self._wide_beams.columns(now, level),
         ]
         uneven = None
         if view.doubt.fidelity:

@@ -13,9 +13,9 @@ from updating.models.build import build_structure
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.models.state import NOMINAL
+from updating.models.width import across_width
 from updating.prediction.predict import Predictor
 from updating.problem.shear import slackening
-from updating.problem.width import stiffening
 
 MANY_ELEMENTS = 500
 """Plates with more elements are compared with a coarser mesh and extrapolated, which costs less."""
@@ -30,7 +30,7 @@ class TheoryError:
     mesh, theory : (n_modes,) arrays
         ln of the better frequency over the model's; theory is 0 where nothing fuller is known [-].
     width : (n_modes,) array
-        The same by bending across the width of a beam, see :mod:`updating.problem.width` [-].
+        The same by bending across the width of a beam, see :mod:`updating.models.width` [-].
     shear : (n_modes,) array
         The same by a section that is softer in shear than a rectangle, see :mod:`updating.problem.shear` [-].
     known : bool
@@ -104,7 +104,10 @@ def theory_error(predictor: Predictor, order: IntArray, *, count: int | None = N
         return TheoryError(nothing, nothing, nothing, nothing, known=False)
     base, vectors = _elastic(reduced, needed)
     mesh, theory = _mesh(predictor.spec, base), _theory(predictor, base, vectors)
-    of_section = stiffening(predictor.spec, order), slackening(predictor.spec, order)
+    of_section = (
+        across_width(predictor.spec, order, np.zeros(0)).stiffening,
+        slackening(predictor.spec, order),
+    )
     return TheoryError(mesh[order], theory[order], *of_section)
 
 

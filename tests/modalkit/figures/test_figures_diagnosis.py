@@ -16,7 +16,7 @@ from modalkit.figures.charts import gap_figure
 from modalkit.output.words import answer
 from modalkit.views.mode_errors import ModeErrors, mode_errors
 from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
-from updating.problem.width import stiffening
+from updating.models.width import stiffening
 
 
 @pytest.mark.parametrize("kind", ["beam", "plate"])
