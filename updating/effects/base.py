@@ -213,6 +213,9 @@ class Effect(ABC):
     """The test that would separate it from these."""
     fidelity: ClassVar[float] = 0.0
     """How far, relative to the shift the effect makes, its own idealisation may be off (1 sigma) [-]."""
+    uneven: ClassVar[bool] = False
+    """Whether that error differs from mode to mode, as of an added mass: it turns modes that are close into each other.
+    The size of a body, a spring or a place is searched, and errs for all modes alike."""
     damping_doubt: ClassVar[float] = 0.0
     """How far the effect leaves the damping in doubt beside what it predicts: 1 sigma of ln zeta [-]."""
     phrase: str = ""

@@ -29,10 +29,13 @@ class Doubt:
         How far its idealisation may be off, relative to the shift it makes [-].
     damping : float
         How far it leaves damping in doubt: 1 sigma of ln zeta [-].
+    uneven : float
+        How far its idealisation may be off in each mode by another amount, relative to the shift it makes [-].
     """
 
     fidelity: float = 0.0
     damping: float = 0.0
+    uneven: float = 0.0
 
 
 NO_DOUBT = Doubt()

@@ -53,7 +53,7 @@ class CloseModes(Nuisances):
         alike = np.sum(change * before, axis=0)
         return np.asarray(np.where(alike < 0, -1.0, 1.0) * columns).reshape(level.size, len(angle))
 
-    def turned_by_doubt(self, now: Prediction, level: FloatArray, fidelity: float) -> FloatArray:
+    def turned_by_doubt(self, now: Prediction, level: FloatArray, uneven: float) -> FloatArray:
         """Return what an error of the idealisation, that differs from mode to mode, changes (n_frf n_modes, k) [-].
 
         A fluid that weighs a few per cent more on one mode than on the next mixes modes that it has brought together.
@@ -61,7 +61,7 @@ class CloseModes(Nuisances):
         What a change that shifts both modes adds between them is at most the geometric mean of what it adds to each.
         """
         i, j = self._neighbours
-        shift = fidelity * np.log(now.frequency / self.setting.nominal.frequency)
+        shift = uneven * np.log(now.frequency / self.setting.nominal.frequency)
         doubt = np.sqrt(np.abs(shift[i] * shift[j]))
         return self._turned(now, level, np.stack([i, j]), turn(now.frequency[i], now.frequency[j], doubt))
 

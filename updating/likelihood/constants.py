@@ -115,7 +115,9 @@ class Constants(Quantity):
         if view.doubt.fidelity:
             uneven, louder = self._idealised(now, predicted, view.doubt.fidelity)
             variance = variance + uneven
-            own += [louder, self._close_modes.turned_by_doubt(now, level, view.doubt.fidelity)]
+            own.append(louder)
+        if view.doubt.uneven:
+            own.append(self._close_modes.turned_by_doubt(now, level, view.doubt.uneven))
         gain = self._gains(predicted)
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))

@@ -62,7 +62,8 @@ class Candidate:
     def doubt_on(self, predictor: Predictor) -> Doubt:
         """Return what they leave in doubt on a specimen and its test."""
         fidelity = max((effect.fidelity_on(predictor) for effect in self.effects), default=0.0)
-        return Doubt(fidelity, max((effect.damping_doubt for effect in self.effects), default=0.0))
+        uneven = max((e.fidelity_on(predictor) for e in self.effects if e.uneven), default=0.0)
+        return Doubt(fidelity, max((e.damping_doubt for e in self.effects), default=0.0), uneven)
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""

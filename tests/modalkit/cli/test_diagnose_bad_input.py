@@ -57,7 +57,8 @@ def test_a_wild_outlier_is_pointed_at_and_nothing_is_named(
     found, text = answer("plate_dry", table_of(wild))
     assert found["cause"]["verdict"] == "unknown"
     assert found["shrink"]["closed_percent"] is None or "best-fitting (rejected)" in text
-    assert any("396.6 Hz deviates from the others" in warning for warning in found["warnings"])
+    # as what deviates from the others, or as what follows a mode that the test lacks
+    assert any("396.6 Hz" in warning for warning in found["warnings"])
 
 
 def test_the_wrong_structure_is_called_that(answer: Callable[..., tuple[dict[str, Any], str]]) -> None:

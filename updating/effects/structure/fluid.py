@@ -77,6 +77,7 @@ class FluidAddedMass(Effect):
     phrase = "the mass of the fluid around it"
     undone_by = frozenset({"in air"})
     fidelity = 0.06
+    uneven = True
     damping_doubt = 0.5
     """A fluid damps, by an amount that is not known here: in water Stokes' layer alone adds 0.03 to 0.3 % to the ratios
     of paper A's structures, a tenth to all of what light steel has dry; eddies and waves come on top."""
