@@ -101,6 +101,9 @@ class View:
         Which of these each of the others may be, -1 where none of them.
     places : (m,) array
         How far the points moved lie from where they are stated in it; empty where they do not [standard deviations].
+    exact : Prediction, optional
+        The modes under what of the state is no idealisation: what idealisations shift, they shift from there. Left out,
+        the nominal ones.
     """
 
     now: Prediction
@@ -110,6 +113,11 @@ class View:
     claims: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     offers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     places: FloatArray = field(default_factory=lambda: np.zeros(0))
+    exact: Prediction | None = None
+
+    def unidealised(self, setting: Setting) -> Prediction:
+        """Return the modes from which idealisations shift."""
+        return setting.nominal if self.exact is None else self.exact
 
 
 @dataclass(frozen=True, eq=False)

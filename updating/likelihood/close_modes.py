@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
-from updating.likelihood.base import Nuisances
+from updating.likelihood.base import Nuisances, View
 from updating.prediction.prediction import Prediction
 from updating.thresholds import LEAST_TURN
 
@@ -53,15 +53,15 @@ class CloseModes(Nuisances):
         alike = np.sum(change * before, axis=0)
         return np.asarray(np.where(alike < 0, -1.0, 1.0) * columns).reshape(level.size, len(angle))
 
-    def turned_by_doubt(self, now: Prediction, level: FloatArray, uneven: float) -> FloatArray:
+    def turned_by_doubt(self, view: View, level: FloatArray) -> FloatArray:
         """Return what an error of the idealisation, that differs from mode to mode, changes (n_frf n_modes, k) [-].
 
         A fluid that weighs a few per cent more on one mode than on the next mixes modes that it has brought together.
         Each pair turns as a whole: as variances of single constants such errors were worth hundreds of determinants.
         What a change that shifts both modes adds between them is at most the geometric mean of what it adds to each.
         """
-        i, j = self._neighbours
-        shift = uneven * np.log(now.frequency / self.setting.nominal.frequency)
+        now, (i, j) = view.now, self._neighbours
+        shift = view.doubt.uneven * np.log(now.frequency / view.unidealised(self.setting).frequency)
         doubt = np.sqrt(np.abs(shift[i] * shift[j]))
         return self._turned(now, level, np.stack([i, j]), turn(now.frequency[i], now.frequency[j], doubt))
 

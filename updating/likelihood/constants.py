@@ -18,7 +18,6 @@ from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
 from updating.likelihood.wide_beams import WideBeams
 from updating.prediction.misplaced import best_levels
-from updating.prediction.prediction import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
     DELAY_FIT_ERROR,
@@ -113,11 +112,11 @@ class Constants(Quantity):
         ]
         uneven = None
         if view.doubt.fidelity:
-            uneven, louder = self._idealised(now, predicted, view.doubt.fidelity)
+            uneven, louder = self._idealised(view, predicted)
             variance = variance + uneven
             own.append(louder)
         if view.doubt.uneven:
-            own.append(self._close_modes.turned_by_doubt(now, level, view.doubt.uneven))
+            own.append(self._close_modes.turned_by_doubt(view, level))
         gain = self._gains(predicted)
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))
@@ -191,25 +190,19 @@ class Constants(Quantity):
         late = 2 * np.pi * self.setting.measured.frequency * abs(delay)
         return np.asarray(DELAY_FIT_ERROR * np.minimum(late, np.pi))
 
-    def _idealised(
-        self, now: Prediction, predicted: FloatArray, fidelity: float
-    ) -> tuple[FloatArray, FloatArray]:
+    def _idealised(self, view: View, predicted: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return variance and a column of doubt by how far a candidate's idealisation may be off.
 
         A change of the modes' levels errs as a whole, what is no mere change of level point by point. Gains of the
         measurement chain are no idealisation: where they counted, a gain of 0.12 was within a roving sensor's doubt.
         """
-        chain = now.gain / self.setting.nominal.gain
-        structure, before = predicted / chain, self._nominal
+        exact, fidelity = view.unidealised(self.setting), view.doubt.fidelity
+        chain = view.now.gain / exact.gain
+        structure = predicted / chain
+        before = exact.constants * self.setting.measured.same_signs(exact.constants) / self.scale
         share = best_levels(structure, before)
         uneven = fidelity * chain * (structure - share * before)
         return uneven**2, (fidelity * chain * (share - 1) * before).reshape(-1, 1)
-
-    @cached_property
-    def _nominal(self) -> FloatArray:
-        """The nominal constants over the measured r.m.s., (n_frf, n_modes) [-]."""
-        nominal = self.setting.nominal.constants
-        return nominal * self.setting.measured.same_signs(nominal) / self.scale
 
     def _gains(self, predicted: FloatArray) -> FloatArray:
         """Return the gain of the whole test, or of each mode where only shapes are known."""

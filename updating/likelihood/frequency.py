@@ -49,7 +49,7 @@ class Frequencies(Quantity):
             named = np.column_stack([named, before.common(now)])
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
-            doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
+            doubtful = view.doubt.fidelity * np.log(now.frequency / view.unidealised(self.setting).frequency)
             left, named = left + doubtful**2, np.column_stack([named, doubtful])
         residual = np.log(test.frequency / now.frequency)
         modes = np.arange(len(residual))

@@ -195,9 +195,9 @@ class UnpairedModes(Quantity):
         """
         alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in swinging(view.state.absorbers)]
         shifts = [abs(float(np.log(self._test.frequency[i] / own))) for own in alone]
-        most = np.nan_to_num(np.abs(np.log(view.now.frequency / self.setting.nominal.frequency))).max(
-            initial=0.0
-        )
+        most = np.nan_to_num(
+            np.abs(np.log(view.now.frequency / view.unidealised(self.setting).frequency))
+        ).max(initial=0.0)
         return (view.doubt.fidelity * min(shifts, default=float(most))) ** 2
 
     def _signs(self, view: View, i: int) -> FloatArray:

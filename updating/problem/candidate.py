@@ -65,6 +65,16 @@ class Candidate:
         uneven = max((e.fidelity_on(predictor) for e in self.effects if e.uneven), default=0.0)
         return Doubt(fidelity, max((e.damping_doubt for e in self.effects), default=0.0), uneven)
 
+    def exact(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
+        """Return the state under its effects on the structure that are no idealisation, beside others that are."""
+        ideal = [effect.fidelity_on(stage) > 0 for effect, _ in parts]
+        own = [
+            part
+            for part, is_ in zip(parts, ideal, strict=True)
+            if not is_ and part[0].channel in ("stiffness", "mass")
+        ]
+        return self.assemble(stage, own) if own and any(ideal) else NOMINAL
+
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""
         theory = predictor.spec.fuller

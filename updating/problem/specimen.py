@@ -141,8 +141,10 @@ class SpecimenProblem:
             Nuisances about which the prediction is linearised, see :meth:`compare`; left out, none [standard
             deviations].
         """
-        (state,) = self.place(candidate, coordinates)
-        found = self.compare(state, shift, doubt=candidate.doubt_on(self.predictor))
+        stage = candidate.stage(self.predictor)
+        parts = candidate.split(stage, coordinates.tolist())
+        state, exact = candidate.assemble(stage, parts), candidate.exact(stage, parts)
+        found = self.compare(state, shift, doubt=candidate.doubt_on(self.predictor), exact=exact)
         return with_outliers(found, candidate.outliers)
 
     @cached_property
@@ -272,7 +274,12 @@ class SpecimenProblem:
         return self._places.bending(self.nominal, np.sqrt(least))
 
     def compare(
-        self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT
+        self,
+        state: State,
+        shift: FloatArray | None = None,
+        *,
+        doubt: Doubt = NO_DOUBT,
+        exact: State = NOMINAL,
     ) -> Comparison:
         """Compare the test with a state of the model.
 
@@ -286,6 +293,8 @@ class SpecimenProblem:
             alone would count them twice.
         doubt : Doubt
             What the state leaves in doubt.
+        exact : State
+            What of the state is no idealisation.
         """
         stated = np.zeros(0) if shift is None or self.baseline is not None else shift
         count = len(self.names)
@@ -305,11 +314,17 @@ class SpecimenProblem:
             prediction,
             *partners[1:],
             places=places,
+            exact=None if exact is NOMINAL else self._exactly(exact),
         )
         blocks = [quantity.block(view) for quantity in self.quantities]
         return assemble(
             blocks, self._layout(blocks), self.sigmas, shift, view.now, scatter_prior(self.measured)
         )
+
+    def _exactly(self, state: State) -> Prediction:
+        """Return the modes of a state in the order of the measured ones, without sensitivities."""
+        found = self.predictor.predict(state, at_least=self.reach)
+        return found.select(self._match(found))
 
     def _layout(self, blocks: Sequence[Block]) -> Layout:
         """Return where the data of each block stand: one layout for all states with as many nuisances of each kind."""

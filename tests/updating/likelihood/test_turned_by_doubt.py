@@ -11,8 +11,9 @@ from updating_cases import PLATE, blank, exactly
 from acquisition.arrays import FloatArray
 from updating import Case, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
-from updating.likelihood.base import Setting
+from updating.likelihood.base import Doubt, Setting, View
 from updating.likelihood.close_modes import CloseModes
+from updating.models.state import State
 
 POINTS = np.array([(x, y) for x in np.linspace(0.1, 0.376, 4) for y in (0.0, 0.07, 0.2)])
 SHIFT, FIDELITY, COUNT = 0.2, 0.01, 6
@@ -32,7 +33,8 @@ def turned(setting: Setting, shift: FloatArray, gain: float = 1.0) -> FloatArray
         replace(setting, nominal=replace(now, frequency=now.frequency * np.exp(-shift))), np.zeros(COUNT)
     )
     level = np.full_like(now.constants, gain)
-    return close.turned_by_doubt(now, level, FIDELITY).reshape(*now.constants.shape, -1)
+    view = View(now, State(), Doubt(FIDELITY, uneven=FIDELITY))
+    return close.turned_by_doubt(view, level).reshape(*now.constants.shape, -1)
 
 
 def test_the_nearest_modes_turn_as_those_of_matrices_with_an_error_between_them() -> None:
