@@ -2,6 +2,7 @@
 
     uv run python benchmarks/bench_bricks.py --seed 3 --trials 40        # needs ccx; some 30 s a trial on one core
     uv run python benchmarks/bench_bricks.py --seed 3 --trials 40 --only 7 12
+    uv run python benchmarks/bench_bricks.py --seed 3 --trials 40 --beams          # strips, studied as beams
 
 Plates and strips of steel, clamped or free, with what is hidden put into the bricks: another elasticity there, a body
 on a stalk, a spring, a soft layer at the root. The modes that CalculiX prints are hit and recorded; the study states
@@ -77,17 +78,20 @@ class Nominal:
         Length, width, thickness [m].
     cells : (2,) tuple of int
         Bricks along and across.
+    beam : bool
+        Whether the study states a beam, hit on its middle line; else a plate.
     """
 
     clamped: bool
     size: tuple[float, float, float]
     cells: tuple[int, int]
+    beam: bool = False
 
     @property
     def points(self) -> FloatArray:
         """Test points, at corners of bricks, as shares of length and width (n, 2) [-]."""
         along = np.arange(4 if self.clamped else 0, self.cells[0] + 1, 4) / self.cells[0]
-        x, y = np.meshgrid(along, [0, 1 / 2, 1], indexing="ij")
+        x, y = np.meshgrid(along, [1 / 2] if self.beam else [0, 1 / 2, 1], indexing="ij")
         return np.stack([x.ravel(), y.ravel()], axis=1)
 
     @property
@@ -101,14 +105,15 @@ class Nominal:
 Hide = Callable[[np.random.Generator, Specimen, Nominal], Specimen]
 
 
-def _inside(rng: np.random.Generator, own: Specimen) -> tuple[float, float]:
-    """Return a place at corners of bricks, off the root."""
+def _inside(rng: np.random.Generator, own: Specimen, nominal: Nominal) -> tuple[float, float]:
+    """Return a place at corners of bricks, off the root; on the middle line of a beam."""
     x, y = own.bricks.x, own.bricks.y
-    return float(x[int(rng.integers(len(x) // 4, len(x)))]), float(y[int(rng.integers(0, len(y)))])
+    across = len(y) // 2 if nominal.beam else int(rng.integers(0, len(y)))
+    return float(x[int(rng.integers(len(x) // 4, len(x)))]), float(y[across])
 
 
 def _block(rng: np.random.Generator, own: Specimen, nominal: Nominal) -> Specimen:
-    at = _inside(rng, own)
+    at = _inside(rng, own, nominal)
     mass = DENSITY * float(np.prod(nominal.size)) * rng.uniform(0.02, 0.08)
     height = own.bricks.thickness / 2 + (mass / 7850.0) ** (1 / 3) / 2
     return replace(own, extra=tuple(body(own.bricks, at, mass, height)))
@@ -116,7 +121,7 @@ def _block(rng: np.random.Generator, own: Specimen, nominal: Nominal) -> Specime
 
 def _soft(rng: np.random.Generator, own: Specimen, nominal: Nominal) -> Specimen:
     loss, length, width = rng.uniform(0.3, 0.6), own.bricks.x[-1], own.bricks.y[-1]
-    long, wide = rng.uniform(0.08, 0.2) * length, rng.uniform(0.2, 0.4) * width
+    long, wide = rng.uniform(0.08, 0.2) * length, (2.0 if nominal.beam else rng.uniform(0.2, 0.4)) * width
     x, y = rng.uniform(0.15, 0.85) * length, rng.uniform(0.25, 0.75) * width
     there = lambda a, b: abs(a - x) < long / 2 and abs(b - y) < wide / 2  # noqa: E731
     bricks = replace(own.bricks, place=there, elastic_there=isotropic(E * (1 - loss), POISSON))
@@ -130,7 +135,7 @@ def _root(rng: np.random.Generator, own: Specimen, nominal: Nominal) -> Specimen
 
 
 def _held(rng: np.random.Generator, own: Specimen, nominal: Nominal) -> Specimen:
-    at = _inside(rng, own)
+    at = _inside(rng, own, nominal)
     length, width, thickness = nominal.size
     stiffness = E * width * thickness**3 / 12 / length**3 * rng.uniform(2.0, 15.0)
     return replace(own, extra=tuple(spring(own.bricks, at, stiffness)))
@@ -196,13 +201,15 @@ SAME = {"clamp": {"clamp_rotation", "clamp_translation"}, "E": {"material"}}
 """Names of the library for what is hidden, where they differ."""
 
 
-def draw(rng: np.random.Generator) -> tuple[Nominal, Specimen, tuple[str, ...]]:
+def draw(rng: np.random.Generator, *, beams: bool) -> tuple[Nominal, Specimen, tuple[str, ...]]:
     """Return what is stated, what stands there, and what was hidden in it."""
     length = rng.uniform(0.25, 0.45)
-    narrow = rng.random() < 0.3
-    width = length * (rng.uniform(0.1, 0.2) if narrow else rng.uniform(0.4, 0.75))
+    narrow = rng.random() < 0.3 or beams
+    width = length * (
+        rng.uniform(0.05, 0.12) if beams else rng.uniform(0.1, 0.2) if narrow else rng.uniform(0.4, 0.75)
+    )
     size = (length, width, length * rng.uniform(0.005, 0.01))
-    nominal = Nominal(bool(rng.random() < 0.5), size, (24, 4 if narrow else 12))
+    nominal = Nominal(bool(rng.random() < 0.5), size, (24, 4 if narrow else 12), beams)
     off = {n: 1 + s * rng.standard_normal() for n, s in TOLERANCES.items()}
     length, width, thickness = (
         a * off[n] for a, n in zip(size, ("length", "width", "thickness"), strict=True)
@@ -212,7 +219,8 @@ def draw(rng: np.random.Generator) -> tuple[Nominal, Specimen, tuple[str, ...]]:
         thickness, isotropic(E * off["E"], POISSON), DENSITY * off["density"], clamped=nominal.clamped,
     )  # fmt: skip
     specimen = Specimen(bricks, damping=off["damping"])
-    possible = [n for n in HIDDEN if n != "clamp" or nominal.clamped]
+    absent = {"clamp": not nominal.clamped, "orthotropy": beams}
+    possible = [n for n in HIDDEN if not absent.get(n)]
     count = 2 if rng.random() < 0.2 else 1
     names = tuple(str(n) for n in rng.choice(possible[1:], count, replace=False))
     if rng.random() < 0.15:
@@ -272,25 +280,30 @@ def beta(first: float) -> float:
 
 def _study(nominal: Nominal, folder: Path, band: tuple[float, float], decay: float, first: float) -> None:
     length, width, thickness = nominal.size
+    strip = nominal.cells[1] < 12
+    kind, theory, elements = (
+        ("beam", "timoshenko", 40) if nominal.beam else ("plate", "kirchhoff", [28, 4 if strip else 14])
+    )
     lines = [
         "[test]", 'files = ["test.uff"]', f"band = {list(band)}", f"exponential_window = {float(decay)!r}",
         "calibration = 0.03", f"repeatability = {REMOUNTED}", "position_sigma = 0.0005", "[model]",
-        'type = "plate"', f"length = {length}", f"width = {width}", f"thickness = {thickness}",
-        f"elements = {[28, 4 if nominal.cells[1] < 12 else 14]}", f"clamped = {['x0'] if nominal.clamped else []}",
-        'theory = "kirchhoff"', "[model.material]", f"E = {E}",
-        f"density = {DENSITY}", f"poisson = {POISSON}", "[model.damping]", f"alpha = {ALPHA}",
-        f"beta = {float(beta(first))!r}", "[tolerances]", *(f"{n} = {s}" for n, s in TOLERANCES.items()),
+        f'type = "{kind}"', f"length = {length}", f"width = {width}", f"thickness = {thickness}",
+        f"elements = {elements}", f"clamped = {['x0'] if nominal.clamped else []}", f'theory = "{theory}"',
+        "[model.material]", f"E = {E}", f"density = {DENSITY}", f"poisson = {POISSON}",
+        "[model.damping]", f"alpha = {ALPHA}", f"beta = {float(beta(first))!r}",
+        "[tolerances]", *(f"{n} = {s}" for n, s in TOLERANCES.items()),
     ]  # fmt: skip
     (folder / "study.toml").write_text("\n".join(lines) + "\n")
 
 
-def trial(seed: int, index: int, folder: Path) -> tuple[str, str, str]:
+def trial(seed: int, index: int, folder: Path, *, beams: bool) -> tuple[str, str, str]:
     """Return the body, what was hidden, and how the answer stands to it."""
     rng = np.random.default_rng([seed, index])
-    nominal, own, names = draw(rng)
+    nominal, own, names = draw(rng, beams=beams)
     measure(rng, nominal, own, folder)
     found = diagnose(sessions_of([folder / "study.toml"])[0].case, library=list(LIBRARY.values()))
-    body_name = f"{'clamped' if nominal.clamped else 'free'} {'strip' if nominal.cells[1] < 12 else 'plate'}"
+    shape = "beam" if beams else "strip" if nominal.cells[1] < 12 else "plate"
+    body_name = f"{'clamped' if nominal.clamped else 'free'} {shape}"
     return body_name, "+".join(names), verdict(found, names)
 
 
@@ -319,13 +332,14 @@ def main() -> None:
     parser.add_argument("--trials", type=int, default=20)
     parser.add_argument("--only", type=int, nargs="*")
     parser.add_argument("--keep", type=Path)
+    parser.add_argument("--beams", action="store_true")
     given = parser.parse_args()
     counts: Counter[str] = Counter()
     for index in given.only or range(given.trials):
         with tempfile.TemporaryDirectory() as temporary:
             folder = given.keep / str(index) if given.keep else Path(temporary)
             folder.mkdir(parents=True, exist_ok=True)
-            kind, hidden, answer = trial(given.seed, index, folder)
+            kind, hidden, answer = trial(given.seed, index, folder, beams=given.beams)
         counts[answer.split(":")[0]] += 1
         print(f"{index:3d}  {kind:14s} {hidden:36s} {answer}", flush=True)
     print(dict(counts))
