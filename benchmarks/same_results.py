@@ -33,6 +33,7 @@ VOLATILE = frozenset(
     {"seconds", "cpu_seconds", "cost", "commitment", "salt", "version", "created", "workers", "elapsed"}
 )
 NUMBER = re.compile(r"[-+]?(?:\d+\.\d*|\.\d+|\d+)(?:[eE][-+]?\d+)?")
+PROGRESS = re.compile(r"(?m)^.* so far\)\s*\n?")  # a line every ten seconds of work
 SEAL = re.compile(r"[0-9a-f]{32,}|\d+:\d\d(?::\d\d)?|\d{1,2}-[A-Z][a-z]{2}-\d{2,4}")
 FOREIGN = 1e-300  # what is smaller than this is zero
 
@@ -135,7 +136,9 @@ def _near(one: float, two: float, tolerance: float) -> bool:
 
 def _texts(one: str, two: str, tolerance: float, where: str) -> Iterator[str]:
     """Compare texts line by line: the words, and the numbers among them."""
-    before, after = ([line.rstrip() for line in SEAL.sub("", text).splitlines()] for text in (one, two))
+    before, after = (
+        [line.rstrip() for line in SEAL.sub("", PROGRESS.sub("", text)).splitlines()] for text in (one, two)
+    )
     if len(before) != len(after):
         yield f"{where}: {len(before)} lines before, {len(after)} after"
     for a, b in zip(before, after, strict=False):
