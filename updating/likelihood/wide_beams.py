@@ -47,11 +47,9 @@ class WideBeams(Nuisances):
 
     def variance(self, level: FloatArray) -> FloatArray:
         """Return what bricks have beyond the plate, near ends and edges above all, (n_frf, n_modes) [-]."""
-        return (
-            np.sum((BEYOND_PLATE * self._changes) ** 2, axis=0) * level**2
-            if self.present
-            else np.zeros_like(level)
-        )
+        if not self.present:
+            return np.zeros_like(level)
+        return np.asarray(np.sum((BEYOND_PLATE * level * self._changes) ** 2, axis=0))
 
     @cached_property
     def _changes(self) -> FloatArray:

@@ -53,7 +53,7 @@ def across_width(
     Parameters
     ----------
     spec : Spec
-        The model; its regions and masses are left aside.
+        The model; its regions are left aside, its masses sit on the middle line.
     order : (n_modes,) int array
         Rank of each mode among the elastic modes.
     points : (n_points,) array
@@ -79,16 +79,14 @@ def across_width(
     theory: Theory = "mindlin" if spec.theory == "timoshenko" else "kirchhoff"
     plate = replace(beam, kind="plate", elements=(cells, across), theory=theory, masses=masses)
     (own, of_beam), (found, of_plate) = _bending(beam, count, points), _bending(plate, count, points)
-    shift, mean, line = np.zeros(count), *np.zeros((2, len(points), count))
-    n = found.size
-    shift[:n] = np.log(found / own[:n])
-    before, bent = (
-        of_beam[0, :, :n],
-        of_plate * np.where(np.sum(of_plate[-1] * of_beam[0, :, :n], axis=0) < 0, -1, 1),
-    )
+    shift, (shape, mean, line) = np.zeros(count), np.zeros((3, len(points), count))
+    n = min(found.size, own.size)
+    shift[:n] = np.log(found[:n] / own[:n])
+    before, bent = of_beam[0, :, :n], of_plate[..., :n]
+    bent = bent * np.where(np.sum(bent[-1] * before, axis=0) < 0, -1.0, 1.0)
     whole = np.einsum("l,lpm->pm", WEIGHTS, bent[:-1])
-    mean[:, :n], line[:, :n] = whole - before, bent[-1] - whole
-    return AcrossWidth(shift[order], of_beam[0][:, order], mean[:, order], line[:, order])
+    shape[:, :n], mean[:, :n], line[:, :n] = before, whole - before, bent[-1] - whole
+    return AcrossWidth(shift[order], shape[:, order], mean[:, order], line[:, order])
 
 
 PLACES, WEIGHTS = (0.5 * one for one in np.polynomial.legendre.leggauss(6))
