@@ -160,6 +160,10 @@ def test_a_cause_in_no_library_is_one_of_a_class_where_a_set_is_not_sure_without
     assert decide(found, significant=True) == ("named", (("E",),))
     assert decide(found, significant=True, unnamed=0.03) == ("named", (("E",),))
     assert decide(found, significant=True, unnamed=0.1) == ("class", (("E",), ("something_else",)))
+    nearly: Any = SimpleNamespace(
+        compared=(row("E", 0.955, 100.0), row("density", 0.045, 90.0)), empty=row("", 0.0, 0.0)
+    )
+    assert decide(nearly, significant=True, unnamed=0.01) == ("class", (("E",), ("density",)))
     half: Any = SimpleNamespace(
         compared=(row("E", 0.5, 100.0), row("density", 0.5, 100.0)), empty=row("", 0.0, 0.0)
     )

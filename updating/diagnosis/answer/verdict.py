@@ -163,8 +163,8 @@ def _better(found: Search, rules: DecisionRules) -> list[Compared]:
 def _credible(found: Search, rules: DecisionRules, unnamed: float = 0.0) -> tuple[tuple[str, ...], ...]:
     """Return the fewest sets that hold the certainty asked for, and those that fit as well as the first.
 
-    A cause in no library is one of them, the last, where it holds what is left of that, or a single set holds less
-    with it.
+    A cause in no library is one of them, and listed last: where it is more probable than all that is left out, or where
+    it holds by itself more than may be left out.
 
     All sets have a share: one whose parameter lies at the end of its range, or which fits badly, is no answer by
     itself, and what it holds makes the others no more certain. What setting data aside explains without it is no cause
@@ -182,17 +182,18 @@ def _credible(found: Search, rules: DecisionRules, unnamed: float = 0.0) -> tupl
     stated = _statements(first, rows, rules)
     total = max(sum(row.probability for row in rows), 1e-300)
     sets: list[tuple[str, ...]] = []
-    held = listed = 0.0
+    held, other = 0.0, unnamed > 1 - rules.credible_share
     for row, probability in stated:
+        share = (1 - unnamed) * probability / total
         alike = row in better and (
             (_close(first, row, rules) and _as_good(first, row, rules)) or _part_left(first, row, rules)
         )
-        if held < rules.credible_share or alike:
+        before = held + (unnamed if unnamed > share else 0.0)  # what is more probable comes first
+        other = other or (unnamed > share and held < rules.credible_share)
+        if before < rules.credible_share or alike:
             sets.append(row.names)
-            listed += probability / total
-        held += probability / total
-    alone = len(sets) == 1 and unnamed > 0 and (1 - unnamed) * listed < rules.credible_share
-    if sets and (alone or unnamed > 1 - rules.credible_share):
+        held += share
+    if sets and (other or 0 < held < rules.credible_share):
         sets.append((SOMETHING_ELSE,))
     return tuple(sets)
 
