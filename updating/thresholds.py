@@ -92,6 +92,10 @@ UNSEEN_SHARES = (1.0, 0.3, 0.1, 0.03)
 next to none of it, and shapes are many data, which show it. Doubled: the largest, and shapes decide less where
 structures do move across."""
 
+BEYOND_PLATE = 0.2
+"""What a solid beam's shapes have beyond a plate's, as a share of what that has beyond a beam (1 sigma) [-]: of clamped
+and free bricks of CalculiX, near ends and where a body sits. Doubled: high modes of wide beams tell less."""
+
 LEAST_TURN = 0.005
 """Shapes of close modes are held to turn into each other where their frequencies' scatter makes it so much [rad]: less
 is within ``LEAST_CONSTANT_NOISE``. Doubled: pairs twice as close are left as sharp as they are."""

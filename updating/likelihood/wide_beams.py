@@ -16,10 +16,7 @@ from updating.likelihood.base import Nuisances
 from updating.likelihood.close_modes import taken_up
 from updating.models.width import across_width
 from updating.prediction.prediction import Prediction
-
-BEYOND_PLATE = 0.2
-"""What bricks have beyond the plate, as a share of what that has beyond the beam (1 sigma) [-]: of clamped and free
-beams of CalculiX, near ends and where a body sits. Doubled: high modes of wide beams tell less."""
+from updating.thresholds import BEYOND_PLATE
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ from modalkit.figures.charts import gap_figure
 from modalkit.output.words import answer
 from modalkit.views.mode_errors import ModeErrors, mode_errors
 from updating.diagnosis.answer.ranked import ParameterEstimate, Ranked
-from updating.models.width import stiffening
+from updating.models.width import across_width
 
 
 @pytest.mark.parametrize("kind", ["beam", "plate"])
@@ -94,7 +94,7 @@ def test_errors_before_and_after_are_those_of_the_modulus() -> None:
     # noise alone: identification 1e-4 and re-mounting 5e-4, two standard deviations, in per cent
     assert errors.floor == pytest.approx(200 * np.hypot(1e-4, 5e-4))
     # a doubt of 1 % in E moves frequencies by 0.5 %, one of 0.5 % in thickness by 0.5 %; and all that beams leave out
-    across = stiffening(case.spec, np.arange(2))
+    across = across_width(case.spec, np.arange(2), np.zeros(0)).stiffening
     assert errors.doubt == pytest.approx(200 * np.sqrt(2 * 0.005**2 + across**2 + 1e-8 + 25e-8), rel=1e-6)
 
 

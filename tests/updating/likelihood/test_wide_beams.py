@@ -9,7 +9,8 @@ from updating_cases import BEAM, blank, case_of, exactly
 from updating import Predictor
 from updating.diagnosis.diagnose import pose
 from updating.likelihood.base import Setting
-from updating.likelihood.wide_beams import BEYOND_PLATE, WideBeams
+from updating.likelihood.wide_beams import WideBeams
+from updating.thresholds import BEYOND_PLATE
 
 WIDE = replace(BEAM, length=0.5, width=0.05, thickness=0.004, clamped=(), masses=(), regions=())
 PLACES = np.linspace(0.05, 0.47, 9)
