@@ -51,11 +51,10 @@ def remaining(now: Stages, seconds: float, before: Stages) -> float | None:
         return None
     start = dict(before)
     whole = before[-1][1]
-    if not now:
+    known = [stage for stage in now if stage[0] in start]  # a stage may be new, as the start of a process
+    if not known:
         return max(whole - seconds, 0.0)
-    name, began = now[-1]
-    if name not in start:
-        return None
+    name, began = known[-1]
     names = [stage for stage, _ in before]
     ended = start[names[min(names.index(name) + 1, len(names) - 1)]]
     pace = began / start[name] if min(began, start[name]) > 1.0 else 1.0

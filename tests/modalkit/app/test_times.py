@@ -19,7 +19,7 @@ BEFORE = [("reading", 2.0), ("comparing", 4.0), ("writing", 24.0), ("done", 30.0
         ([("reading", 2.0), ("comparing", 4.0)], 14.0, 16.0),
         ([("reading", 2.0), ("comparing", 8.0)], 18.0, 2 * 20.0 - 10.0 + 2 * 6.0),  # half as fast as before
         ([("reading", 2.0), ("comparing", 4.0)], 50.0, 6.0),  # longer than before: what follows is left
-        ([("planning", 2.0)], 3.0, None),
+        ([("planning", 2.0)], 3.0, 27.0),  # a stage that is new
     ],
 )
 def test_what_is_left_follows_from_the_last_time(now, seconds: float, left: float | None) -> None:
