@@ -14,6 +14,7 @@ from updating.diagnosis.diagnose import diagnose, searched_case
 SEARCHED = [LIBRARY[name] for name in ("E", "density")]
 
 
+@pytest.mark.long
 def test_what_was_searched_is_decided_on_by_other_rules(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(5)
     softer = replace(specimen(rng), E=0.9 * BEAM.material.E)

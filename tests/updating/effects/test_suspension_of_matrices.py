@@ -154,6 +154,7 @@ def test_stated_cords_are_part_of_the_model_and_unknown_ones_are_refused() -> No
 RIVALS = ("suspension", "ground_spring", "local_stiffness", "lumped_mass", "E", "uniform_damping")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "along",
     ["z", pytest.param("all", marks=pytest.mark.slow)],
