@@ -93,8 +93,8 @@ next to none of it, and shapes are many data, which show it. Doubled: the larges
 structures do move across."""
 
 BEYOND_PLATE = 0.2
-"""What a solid beam's shapes have beyond a plate's, as a share of what that has beyond a beam (1 sigma) [-]: of clamped
-and free bricks of CalculiX, near ends and where a body sits. Doubled: high modes of wide beams tell less."""
+"""Share of what a plate's shapes have beyond a beam's that bricks may have beyond the plate, 1 sigma [-]: near ends and
+under bodies (CalculiX). Doubled: high modes of wide beams tell less."""
 
 LEAST_TURN = 0.005
 """Shapes of close modes are held to turn into each other where their frequencies' scatter makes it so much [rad]: less

@@ -12,7 +12,7 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Block
 from updating.likelihood.hit_scatter import HitScatter, hit_scatter
-from updating.models.state import State
+from updating.models.state import NOMINAL, State
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
@@ -31,11 +31,14 @@ class Doubt:
         How far it leaves damping in doubt: 1 sigma of ln zeta [-].
     uneven : float
         How far its idealisation may be off in each mode by another amount, relative to the shift it makes [-].
+    exact : State
+        What of it is no idealisation: what idealisations shift, they shift from there.
     """
 
     fidelity: float = 0.0
     damping: float = 0.0
     uneven: float = 0.0
+    exact: State = NOMINAL
 
 
 NO_DOUBT = Doubt()
@@ -102,8 +105,7 @@ class View:
     places : (m,) array
         How far the points moved lie from where they are stated in it; empty where they do not [standard deviations].
     exact : Prediction, optional
-        The modes under what of the state is no idealisation: what idealisations shift, they shift from there. Left out,
-        the nominal ones.
+        The modes under what of the state is no idealisation; left out, the nominal ones.
     """
 
     now: Prediction

@@ -13,6 +13,7 @@ twice that less: per cents of it, of a beam half as wide as the waves in it are 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -101,15 +102,21 @@ def _bending(
     Those that move it by less than a share ``twist`` of what the liveliest does are twist. Doubled: a bending mode
     that the line's ends alone see may be missed. Shapes are (lines, n_points, count), the middle the last [kg^-1/2].
     """
-    structure = build_structure(spec)
-    first = structure.rigid_modes
-    values, vectors = structure.eigen(first + (3 * count + 4 if spec.kind == "plate" else count))
-    elastic = vectors[:, first:]
+    structure, omega, elastic = _elastic(spec, 3 * count + 4 if spec.kind == "plate" else count)
     ends = np.linspace(0.0, spec.length, 8 * count + 1)
     moved = np.abs(_on_line(structure, spec, ends, 0.0) @ elastic).max(axis=0)
     bending = np.flatnonzero(moved > twist * moved.max())[:count]
     lines = [_on_line(structure, spec, points, y) @ elastic[:, bending] for y in (*PLACES, 0.0)]
-    return np.sqrt(values[first:][bending]), np.stack(lines)
+    return omega[bending], np.stack(lines)
+
+
+@lru_cache(maxsize=4)  # frequencies and shapes are asked for one after the other
+def _elastic(spec: Spec, count: int) -> tuple[Structure, FloatArray, FloatArray]:
+    """Return a model, its lowest frequencies (count,) [rad/s] and their shapes (n_dofs, count)."""
+    structure = build_structure(spec)
+    first = structure.rigid_modes
+    values, vectors = structure.eigen(first + count)
+    return structure, np.sqrt(values[first:]), vectors[:, first:]
 
 
 def _on_line(structure: Structure, spec: Spec, along: FloatArray, y: float) -> Sparse:

@@ -59,21 +59,18 @@ class Candidate:
         """Names of the effects."""
         return tuple(effect.name for effect in self.effects)
 
-    def doubt_on(self, predictor: Predictor) -> Doubt:
-        """Return what they leave in doubt on a specimen and its test."""
-        fidelity = max((effect.fidelity_on(predictor) for effect in self.effects), default=0.0)
-        uneven = max((e.fidelity_on(predictor) for e in self.effects if e.uneven), default=0.0)
-        return Doubt(fidelity, max((e.damping_doubt for e in self.effects), default=0.0), uneven)
-
-    def exact(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
-        """Return the state under its effects on the structure that are no idealisation, beside others that are."""
-        ideal = [effect.fidelity_on(stage) > 0 for effect, _ in parts]
-        own = [
-            part
-            for part, is_ in zip(parts, ideal, strict=True)
-            if not is_ and part[0].channel in ("stiffness", "mass")
-        ]
-        return self.assemble(stage, own) if own and any(ideal) else NOMINAL
+    def doubt_on(self, predictor: Predictor, parts: Sequence[tuple[Effect, Values]] = ()) -> Doubt:
+        """Return what they leave in doubt on a specimen and its test; ``parts`` are those acting, with their values."""
+        fidelity = [effect.fidelity_on(predictor) for effect in self.effects]
+        structure = [part for part in parts if part[0].channel in ("stiffness", "mass")]
+        exact = [(effect, values) for effect, values in structure if not effect.fidelity_on(predictor)]
+        shared = exact and len(exact) < len(structure)
+        return Doubt(
+            fidelity=max(fidelity, default=0.0),
+            damping=max((effect.damping_doubt for effect in self.effects), default=0.0),
+            uneven=max((f for f, e in zip(fidelity, self.effects, strict=True) if e.uneven), default=0.0),
+            exact=self.assemble(self.stage(predictor), exact) if shared else NOMINAL,
+        )
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""

@@ -143,8 +143,8 @@ class SpecimenProblem:
         """
         stage = candidate.stage(self.predictor)
         parts = candidate.split(stage, coordinates.tolist())
-        state, exact = candidate.assemble(stage, parts), candidate.exact(stage, parts)
-        found = self.compare(state, shift, doubt=candidate.doubt_on(self.predictor), exact=exact)
+        doubt = candidate.doubt_on(self.predictor, parts)
+        found = self.compare(candidate.assemble(stage, parts), shift, doubt=doubt)
         return with_outliers(found, candidate.outliers)
 
     @cached_property
@@ -274,12 +274,7 @@ class SpecimenProblem:
         return self._places.bending(self.nominal, np.sqrt(least))
 
     def compare(
-        self,
-        state: State,
-        shift: FloatArray | None = None,
-        *,
-        doubt: Doubt = NO_DOUBT,
-        exact: State = NOMINAL,
+        self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT
     ) -> Comparison:
         """Compare the test with a state of the model.
 
@@ -293,8 +288,6 @@ class SpecimenProblem:
             alone would count them twice.
         doubt : Doubt
             What the state leaves in doubt.
-        exact : State
-            What of the state is no idealisation.
         """
         stated = np.zeros(0) if shift is None or self.baseline is not None else shift
         count = len(self.names)
@@ -314,7 +307,7 @@ class SpecimenProblem:
             prediction,
             *partners[1:],
             places=places,
-            exact=None if exact is NOMINAL else self._exactly(exact),
+            exact=None if doubt.exact is NOMINAL else self._exactly(doubt.exact),
         )
         blocks = [quantity.block(view) for quantity in self.quantities]
         return assemble(

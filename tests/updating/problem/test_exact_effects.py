@@ -47,4 +47,4 @@ def test_only_effects_on_the_structure_beside_idealisations_are_exact(problem: S
     for effects in ((E,), (MASS,), (gain, MASS), (E, gain)):
         candidate = Candidate(effects)
         middle = [0.5] * len(candidate.parameters(stage))
-        assert candidate.exact(stage, candidate.split(stage, middle)) is NOMINAL
+        assert candidate.doubt_on(stage, candidate.split(stage, middle)).exact is NOMINAL

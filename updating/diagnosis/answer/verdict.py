@@ -193,7 +193,7 @@ def _credible(found: Search, rules: DecisionRules, unnamed: float = 0.0) -> tupl
         if before < rules.credible_share or alike:
             sets.append(row.names)
         held += share
-    if sets and (other or 0 < held < rules.credible_share):
+    if sets and other:
         sets.append((SOMETHING_ELSE,))
     return tuple(sets)
 

@@ -78,7 +78,8 @@ def columns(
 def compared(problem: SpecimenProblem, explanation: Explanation, field: FloatArray) -> Comparison:
     """Compare the data with an explanation at its best and a field (2, r) on it, see :func:`columns`."""
     candidate, best = explanation.candidate, explanation.best
-    (state,) = problem.place(candidate, best.coordinates)
+    (parts,) = problem.parts(candidate, best.coordinates)
+    state = candidate.assemble(candidate.stage(problem.predictor), parts)
     changed = State(
         regional={
             (region, name): float(np.exp(values[region]))
@@ -86,7 +87,8 @@ def compared(problem: SpecimenProblem, explanation: Explanation, field: FloatArr
             for region in np.flatnonzero(values).tolist()
         }
     )
-    found = problem.compare(state.plus(changed), best.about, doubt=candidate.doubt_on(problem.predictor))
+    doubt = candidate.doubt_on(problem.predictor, parts)
+    found = problem.compare(state.plus(changed), best.about, doubt=doubt)
     if len(best.coordinates):  # its parameters become nuisances, which join the channels
         found = found.channels_settled(best.marginal.judged)
     return with_outliers(found, candidate.outliers)

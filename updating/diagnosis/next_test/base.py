@@ -85,8 +85,10 @@ class Site:
         explanation = rival.explanation
         if len(self.diagnosis_problem.specimens) == 1:
             return explanation.best.comparison
-        state = self.diagnosis_problem.place(explanation.candidate, explanation.best.coordinates)[self.index]
-        return self.problem.compare(state, doubt=explanation.candidate.doubt_on(self.problem.predictor))
+        candidate, predictor = explanation.candidate, self.problem.predictor
+        parts = self.diagnosis_problem.parts(candidate, explanation.best.coordinates)[self.index]
+        state = candidate.assemble(candidate.stage(predictor), parts)
+        return self.problem.compare(state, doubt=candidate.doubt_on(predictor, parts))
 
     def doubts(self, rival: Rival) -> IntArray:
         """Return which of a rival's nuisances are this specimen's named doubts."""

@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray, IntArray
 from identification.pairing import counterparts
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
 from updating.effects.base import Effect
+from updating.likelihood.base import Doubt
 from updating.likelihood.comparison import Comparison
 from updating.models.absorbers import swinging
 from updating.models.state import State
@@ -45,25 +46,25 @@ class Repeat(Trial):
     def outcomes(self, site: Site, rivals: tuple[Rival, ...]) -> tuple[Outcome, ...]:
         """Return what each rival expects."""
         blank = self.problem(site)
-        lead = self._state(blank, site, rivals[0], rivals[0].explanation.best.coordinates)
+        lead, _ = self._there(blank, site, rivals[0], rivals[0].explanation.best.coordinates)
         data = imagined(blank.measured, blank.predictor, lead, blank.order)
         then = replace(blank, measured=data, predictor=predictor_for(blank.predictor, data))
         return tuple(self._outcome(then, site, rival) for rival in rivals)
 
-    def _state(self, then: SpecimenProblem, site: Site, rival: Rival, coordinates: FloatArray) -> State:
-        candidate = rival.explanation.candidate
-        parts = [
-            part
-            for part in site.diagnosis_problem.parts(candidate, coordinates)[site.index]
-            if self.keeps(part[0])
-        ]
-        return candidate.assemble(candidate.stage(then.predictor), parts)
+    def _there(
+        self, then: SpecimenProblem, site: Site, rival: Rival, coordinates: FloatArray
+    ) -> tuple[State, Doubt]:
+        """Return the state in that test, and what it leaves in doubt."""
+        candidate, predictor = rival.explanation.candidate, then.predictor
+        every = site.diagnosis_problem.parts(candidate, coordinates)[site.index]
+        parts = [part for part in every if self.keeps(part[0])]
+        return candidate.assemble(candidate.stage(predictor), parts), candidate.doubt_on(predictor, parts)
 
     def _compare(
         self, then: SpecimenProblem, site: Site, rival: Rival, coordinates: FloatArray
     ) -> Comparison:
-        state = self._state(then, site, rival, coordinates)
-        return then.compare(state, doubt=rival.explanation.candidate.doubt_on(then.predictor))
+        state, doubt = self._there(then, site, rival, coordinates)
+        return then.compare(state, doubt=doubt)
 
     def _outcome(self, then: SpecimenProblem, site: Site, rival: Rival) -> Outcome:
         best = rival.explanation.best

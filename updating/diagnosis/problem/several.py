@@ -243,9 +243,13 @@ class Several:
         acting = tuple((e, tuple(own[e.key].items())) for e in candidate.effects if e.key in own)
         stage = candidate.stage(problem.predictor)
         key = (i, candidate.fuller, stage, acting, doubt, None if shift is None else shift.tobytes())
-        return self.recent.get(
-            key, lambda: problem.compare(self._state(candidate, problem, own), shift, doubt=doubt)
-        )
+
+        def compared() -> Comparison:
+            parts = [(effect, own[effect.key]) for effect, _ in acting]
+            there = candidate.doubt_on(problem.predictor, parts)
+            return problem.compare(candidate.assemble(stage, parts), shift, doubt=there)
+
+        return self.recent.get(key, compared)
 
     def compare(self, state: State) -> Comparison:
         """Compare all data with one state of every specimen."""
