@@ -348,9 +348,8 @@ DIFFERENCE_STEP = 1e-3
 SHORTEST_STEP = 1e-6
 """The shortest of them [-]: below it round-off of the modes is more than what they change by."""
 
-NOISE_SHARE = 3.0
-"""By how much the log-likelihood may change over a standard deviation by the noise's own change, before the step is
-held to be too long [-]. Doubled: modes that turn into each other are followed less well."""
+DIFFERENCE_SHARE = 0.05
+"""The longest of them, as a share of the likelihood's width [-]. Doubled: slopes err more beside a narrow ridge."""
 
 UNDERSTEPPED = 1.3
 """A step that gains so many times what the parabola promised was too short [-]: far from the data the likelihood's

@@ -175,11 +175,13 @@ def _sampled(
 ) -> Explanation:
     """Return the evidence by predictions at samples about maxima, ``at_once`` at a time to bound the memory.
 
-    Where the prediction has to be linearised anew each sample begins at the nearest one before, so one at a time.
+    Where the prediction has to be linearised anew each sample begins at the nearest one before, so one at a time. Where
+    too few samples carry the weight and the best of them is above every maximum, a maximum was missed: it is climbed
+    from there, and drawn about, too.
     """
     at_once = 1 if problem.wide else at_once
     peaks = [*peaks, *along_ridge(problem, candidate, peaks[0])]
-    best = max((peak.point for peak in peaks), key=_height)
+    top = best = max((peak.point for peak in peaks), key=_height)
     known = [(peak.point.coordinates, peak.point.about) for peak in peaks]
 
     def log_likelihood(samples: FloatArray) -> FloatArray:
@@ -193,9 +195,12 @@ def _sampled(
             known.extend((point.coordinates, point.about) for point in points)
         return np.array(heights)
 
-    found = draw_posterior(
-        log_likelihood, about(peaks), min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE)
-    )
+    count = min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE)
+    found = draw_posterior(log_likelihood, about(peaks), count)
+    if found.effective < least(len(peaks[0].gradient)) and _height(best) > _height(top) + AT_REST:
+        peaks = [maximise(problem, candidate, best), *peaks]
+        best = max(best, peaks[0].point, key=_height)
+        found = draw_posterior(log_likelihood, about(peaks), count)
     return _explanation(candidate, best, found, peaks)
 
 

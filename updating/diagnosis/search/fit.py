@@ -14,12 +14,12 @@ from updating.likelihood.gaussian import Marginal, marginals, normal_equations
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
     AT_REST,
+    DIFFERENCE_SHARE,
     DIFFERENCE_STEP,
     FARTHEST_TOLERANCE,
     FRESH_PARAMETERS,
     HOPELESS_BEHIND,
     LITTLE_GAIN,
-    NOISE_SHARE,
     PATIENT_STEPS,
     RELINEARISATIONS,
     SHORTEST_STEP,
@@ -210,7 +210,7 @@ class _Slope:
     noise_gradient : (k,) array
         What the noise's own change with the parameters adds to it [-].
     fresh : bool
-        Whether the sensitivities were taken at this very point.
+        Whether it was taken at this very point, by steps that are short enough.
     """
 
     columns: FloatArray
@@ -220,18 +220,30 @@ class _Slope:
     fresh: bool
 
 
-def _slope(problem: DiagnosisProblem, candidate: Candidate, point: Point, keep: BoolArray | None) -> _Slope:
-    """Take the slope at a point by differences, by shorter ones where the likelihood is narrower than a step.
+def _slope(
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    point: Point,
+    keep: BoolArray | None,
+    before: _Slope | None = None,
+) -> _Slope:
+    """Take the slope at a point by differences, their steps a small share of the likelihood's own width.
 
-    What it changes by beside the data's own pull is the noise, by no more than some units over a standard deviation:
-    else the step has left the parabola, as that of close modes that turn into each other.
+    Over a longer step the likelihood falls by its curvature, and its slope is the small difference of two large
+    numbers: beside a narrow ridge it points down where the way is up. The width is that of the slope ``before``. Where
+    the steps prove too long, the sensitivities are good, and the slope is the data's own; it is not ``fresh``.
     """
-    sizes = _plain_steps(point)
+    sizes = _plain_steps(point) if before is None else _within_width(before.normal)
     slope = _sloped(problem, candidate, point, keep, sizes)
-    width = 1.0 / np.sqrt(np.maximum(np.diag(slope.normal), 1e-300))
-    if np.any((width < sizes) & (np.abs(slope.noise_gradient) * width > NOISE_SHARE)):
-        return _sloped(problem, candidate, point, keep, np.clip(0.5 * width, SHORTEST_STEP, sizes))
+    if np.any(_within_width(slope.normal) < 0.5 * sizes):
+        return replace(slope, noise_gradient=np.zeros_like(slope.load), fresh=False)
     return slope
+
+
+def _within_width(normal: FloatArray) -> FloatArray:
+    """Return steps of differences that are short beside the width of each parameter, the others fixed, (k,) [-]."""
+    width = 1.0 / np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    return np.clip(DIFFERENCE_SHARE * width, SHORTEST_STEP, DIFFERENCE_STEP)
 
 
 def _sloped(
@@ -276,8 +288,9 @@ def maximise(
     point, slope = _ascend(problem, candidate, start, keep, rounds, bar)
     if not point.possible:
         return Peak(point, np.eye(len(point.coordinates)), np.zeros(len(point.coordinates)))
-    if slope is None or (not slope.fresh and bar - point.marginal.log_likelihood < HOPELESS_BEHIND):
-        slope = _slope(problem, candidate, point, keep)
+    hopeless = slope is not None and bar - point.marginal.log_likelihood >= HOPELESS_BEHIND
+    while slope is None or not (slope.fresh or hopeless):
+        slope = _slope(problem, candidate, point, keep, slope)
     return Peak(point, slope.normal, slope.load + slope.noise_gradient)
 
 
@@ -328,8 +341,11 @@ def _uphill(
     point = start if isinstance(start, Point) else evaluate(problem, candidate, start, keep=keep)
     damping, stretch = 1e-3, 1.0
     slope: _Slope | None = None
+    retake = True
     for step_number in range(rounds if point.possible and len(point.coordinates) else 0):
-        slope = slope or _slope(problem, candidate, point, keep)
+        if retake or slope is None:
+            slope, retake = _slope(problem, candidate, point, keep, slope), False
+        fresh = slope.fresh
         gradient = slope.load + slope.noise_gradient
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
@@ -349,13 +365,14 @@ def _uphill(
                 slope, columns=columns, noise_gradient=slope.noise_gradient * quieter, fresh=False
             )
             point, damping = trial, damping / 5
-        elif slope.fresh:
+        elif fresh:
             damping *= 10
         missing = LITTLE_GAIN * (bar - point.marginal.log_likelihood) if step_number >= PATIENT_STEPS else 0.0
-        if abs(gain) < max(AT_REST, missing) or damping > 1e6:
+        at_rest = abs(gain) < AT_REST
+        if (at_rest and fresh) or abs(gain) < missing or damping > 1e6:
             break
-        if not slope.fresh and (gain <= 0 or len(point.coordinates) <= FRESH_PARAMETERS):
-            slope = None
+        if not slope.fresh and (gain <= 0 or at_rest or len(point.coordinates) <= FRESH_PARAMETERS):
+            retake = True
         elif gain > 0:
             normal, load = _curvature(point, slope.columns, keep)
             slope = replace(slope, normal=normal, load=load)

@@ -1,0 +1,41 @@
+"""The slope of the log-likelihood is right where that is far narrower than a step of differences would be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from updating_cases import BEAM, blank, case_of, exactly
+
+from updating import LIBRARY, Predictor
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.fit import evaluate, maximise
+from updating.models.spec import Material
+from updating.problem.candidate import Candidate
+
+BAR = replace(
+    BEAM, length=0.8, width=0.04, thickness=0.008, elements=(40,), clamped=(), theory="euler-bernoulli",
+    material=Material(70e9, 2700.0, 0.33), regions=(), masses=(),
+)  # fmt: skip
+POINTS = np.linspace(0.0, BAR.length, 12)
+TRUTH = {"mass": 0.05, "x": 0.05, "bulk": 4.0}
+
+
+def test_a_slope_beside_a_narrow_ridge_is_that_of_the_likelihood() -> None:
+    """Place and rotary inertia of a body near a free end are exchanged along a ridge 1e-4 of the prior wide."""
+    predictor = Predictor(BAR, blank(POINTS))
+    effect = LIBRARY["lumped_mass"]
+    truth = predictor.predict(effect.state(predictor, TRUTH), count=6)
+    noise = 0.003 * np.abs(truth.constants).max(axis=0) * np.ones_like(truth.constants)
+    problem, _ = pose(case_of(exactly(predictor, truth, sigma=3e-6, constants_sigma=noise), BAR))
+    candidate = Candidate((effect,), chosen=(problem.forms(effect)[-1],))
+    aside = np.array(effect.quantiles(predictor, {**TRUTH, "bulk": 3.0})) + [0.0, 2e-4, 0.0]
+    peak = maximise(problem, candidate, aside, rounds=0)
+    width = 1 / np.sqrt(np.diag(peak.normal))
+    assert width[1] < 1e-3
+    for i, short in enumerate(0.01 * np.minimum(width, 0.01)):
+        ends = aside + short * np.outer([1, -1], np.eye(3)[i])
+        high, low = (
+            evaluate(problem, candidate, end, about=peak.point.about).marginal.log_likelihood for end in ends
+        )
+        assert abs(peak.gradient[i] - (high - low) / (2 * short)) < 0.02 / width[i]
