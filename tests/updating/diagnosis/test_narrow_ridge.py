@@ -29,7 +29,7 @@ def test_a_slope_beside_a_narrow_ridge_is_that_of_the_likelihood() -> None:
     noise = 0.003 * np.abs(truth.constants).max(axis=0) * np.ones_like(truth.constants)
     problem, _ = pose(case_of(exactly(predictor, truth, sigma=3e-6, constants_sigma=noise), BAR))
     candidate = Candidate((effect,), chosen=(problem.forms(effect)[-1],))
-    aside = np.array(effect.quantiles(predictor, {**TRUTH, "bulk": 3.0})) + [0.0, 2e-4, 0.0]
+    aside = np.array(effect.quantiles(predictor, {**TRUTH, "x": 0.05016, "bulk": 3.0}))
     peak = maximise(problem, candidate, aside, rounds=0)
     width = 1 / np.sqrt(np.diag(peak.normal))
     assert width[1] < 1e-3
