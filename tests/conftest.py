@@ -27,7 +27,7 @@ SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--long", action="store_true", help="also run the tests marked long, as .ci/run does")
+    parser.addoption("--long", action="store_true", help="also run the tests marked long")
     parser.addoption("--slow", action="store_true", help="also run the tests marked long or slow")
 
 
