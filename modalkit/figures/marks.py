@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
-from modalkit.figures.style import INK, NAMED, PROBABILITY, SIGNED, SMALL
+from modalkit.figures.style import NAMED, PROBABILITY, SIGNED, SMALL, ink_on
 from modalkit.views.chart import Chart, Series
 
 MARKERS = {"dot": "o", "square": "s", "diamond": "D", "down": "v", "up": "^", "cross": "x", "right": ">"}
@@ -103,14 +103,13 @@ def _cells(axes: Axes, series: Series, chart: Chart, order: float) -> None:
             Rectangle((a, c), b - a, d - c, facecolor=colour, edgecolor="white", linewidth=1.2, zorder=order)
         )
         size = min(SMALL, 72 * scale * (b - a) / max(0.62 * len(text), 1.8))
-        ink = "white" if abs(v) > 0.5 else INK
         if text and size > 3.0:
             axes.text(
                 (a + b) / 2,
                 (c + d) / 2,
                 text,
                 fontsize=size,
-                color=ink,
+                color=ink_on(colour),
                 ha="center",
                 va="center",
                 zorder=order,

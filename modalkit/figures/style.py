@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
+from matplotlib.typing import ColorType
 
 from acquisition.quantities import raised
 
@@ -89,6 +91,13 @@ def tidy(axes: Axes, *, x: str = "", y: str = "", grid: str = "both") -> Axes:
     axes.set_xlabel(raised(x), fontsize=TEXT, color=INK)
     axes.set_ylabel(raised(y), fontsize=TEXT, color=INK)
     return axes
+
+
+def ink_on(colour: ColorType) -> str:
+    """Return black or white for text on a cell: which has the greater contrast, 4.5 or more (WCAG 2.2)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    luminance = float(np.dot([0.2126, 0.7152, 0.0722], linear))
+    return "black" if (luminance + 0.05) ** 2 > 1.05 * 0.05 else "white"
 
 
 def bare(axes: Axes) -> Axes:

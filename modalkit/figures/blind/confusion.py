@@ -24,6 +24,7 @@ from modalkit.figures.style import (
     WIDTH,
     caption,
     caption_height,
+    ink_on,
     new_figure,
     place,
     text_width,
@@ -180,8 +181,9 @@ def _cells(axes: Axes, counts: Counts, at: FloatArray, cell: float) -> None:
         axes.add_patch(Rectangle((j + 0.03, down[i] + 0.03), 0.94, 0.94, facecolor=colour, edgecolor="none"))
         if count >= 0.05:
             text = f"{count:.0f}" if abs(count - round(count)) < 0.05 or count >= 10 else f"{count:.1f}"
-            ink = "white" if share > 0.5 else INK
-            axes.text(j + 0.5, down[i] + 0.52, text, fontsize=size, color=ink, ha="center", va="center")
+            axes.text(
+                j + 0.5, down[i] + 0.52, text, fontsize=size, color=ink_on(colour), ha="center", va="center"
+            )
         if counts.right[i, j]:
             frame = Rectangle(
                 (j + 0.06, down[i] + 0.06), 0.88, 0.88, fill=False, edgecolor=GREEN, linewidth=1.5, zorder=4

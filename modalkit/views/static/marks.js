@@ -102,6 +102,9 @@ function link(group, series, { x, y }) {
   group.append(s("path", { d: path.join(""), class: `line ${series.colour} thick` }));
 }
 
+/** From this share of full colour on, black text is easier to read than white on the cells of the dark scheme. */
+const BRIGHT = 0.65;
+
 /** Rectangles that have a value from 0 to 1, written into those that have room. */
 function cells(group, series, { x, y }) {
   const targets = [];
@@ -116,7 +119,7 @@ function cells(group, series, { x, y }) {
     const text = series.written?.[i];
     if (text && 7 * text.length + 8 < b - a && d - c > 13)
       group.append(
-        s("text", { x: n((a + b) / 2), y: n((c + d) / 2 + 4), class: size > 0.55 ? "in strong" : "in" }, text),
+        s("text", { x: n((a + b) / 2), y: n((c + d) / 2 + 4), class: size > BRIGHT ? "in strong" : "in" }, text),
       );
     targets.push({ x: (a + b) / 2, y: (c + d) / 2, i, series, box });
   });
