@@ -176,8 +176,8 @@ def _sampled(
     """Return the evidence by predictions at samples about maxima, ``at_once`` at a time to bound the memory.
 
     Where the prediction has to be linearised anew each sample begins at the nearest one before, so one at a time. Where
-    too few samples carry the weight and the best of them is above every maximum, a maximum was missed: it is climbed
-    from there, and drawn about, too.
+    too few samples carry the weight and the best of them is above every maximum, a maximum was missed: it is searched
+    from there, and samples are drawn about it, too.
     """
     at_once = 1 if problem.wide else at_once
     peaks = [*peaks, *along_ridge(problem, candidate, peaks[0])]
