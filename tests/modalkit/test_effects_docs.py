@@ -168,4 +168,4 @@ def test_a_study_and_the_command_line_take_it_with_its_unit(library: dict[str, E
 def test_bulk_is_explained_where_an_effect_has_it() -> None:
     """It stands in rankings as ``sensor_mass.bulk``; the report and the list of effects say what it is."""
     for name in ("sensor_mass", "lumped_mass"):
-        assert "bulk is its rotary inertia over that of a steel cube" in LIBRARY[name].footprint
+        assert "bulk is its rotary inertia, relative to a steel cube" in LIBRARY[name].footprint

@@ -38,9 +38,9 @@ class Supposed(Effect):
         self.phrase = hypothesis.name
         self.channel: Channel = _channel(hypothesis)
         why = f": {hypothesis.why}" if hypothesis.why else ""
-        self.summary = f"It is as the study supposes{why}."
+        self.summary = f"The hypothesis of the study holds{why}."
         self.footprint = (
-            "What the study's other matrices, or the other value of its parameter, make of the model."
+            "The change of the model by the study's other matrices, or by the other value of its parameter."
         )
         self.separated_by = "inspect that place, repair it, and repeat the test"
 
@@ -53,7 +53,7 @@ class Supposed(Effect):
         own = self.hypothesis
         if own.of_parameter:
             return (Parameter("value", own.unit, own.low, own.high, "as the study states it", natural=EDGES),)
-        why = "as the study states it: 0 is the unchanged model, 1 all the way"
+        why = "as the study states it: 0 is the unchanged model, 1 the full change"
         return (Parameter("amount", "-", own.low, own.high, why, natural=EDGES),)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:

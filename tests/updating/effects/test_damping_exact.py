@@ -50,7 +50,7 @@ def test_less_damping_than_expected_leaves_the_same_share_of_every_mode(place: s
     assert "less" in effect.sentence(values)
     named = {"alpha", "beta"} - {name.split(".")[1] for name, _ in less.parameters(predictor)}
     assert set(effect.derived(predictor, values)) == {n for n in named if values[n]}
-    with pytest.raises(StudyError, match="takes more from mode"):
+    with pytest.raises(StudyError, match="removes more than the expected damping"):
         effect.state(predictor, {"alpha": 0.0, "beta": 0.0, "loss_factor": -2.5 * float(plain.max())})
 
 

@@ -139,7 +139,7 @@ def test_cords_are_where_somebody_named_them_or_at_ends_and_corners() -> None:
 
 
 def test_what_is_held_hangs_on_no_cords() -> None:
-    assert "does not move freely" in str(EFFECT.why_not(LOOK["matrices"]))
+    assert "the model is not free" in str(EFFECT.why_not(LOOK["matrices"]))
     assert EFFECT.why_not(predictor()) is None
 
 

@@ -57,7 +57,7 @@ def test_bounce_and_pitch_are_none_that_something_hangs_on(noise: float) -> None
     problem, warnings = pose(case_of(with_bounce(exactly(LOOK, LOOK.predict(count=5)), noise=noise), FREE))
     assert problem.measured.unpaired is None
     assert taken_out(warnings) == 2
-    assert "every measured mode is one of the model's" in str(problem.applies(LIBRARY["absorber"]))
+    assert "every measured mode is paired" in str(problem.applies(LIBRARY["absorber"]))
 
 
 def test_the_mode_of_what_hangs_on_it_stays() -> None:

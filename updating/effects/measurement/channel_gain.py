@@ -30,8 +30,8 @@ class ChannelGain(Effect):
         "The level of some points is off by one factor: a loose plug, a worn tip, another range or sensor."
     )
     footprint = (
-        "The constants of the points, or of a fixed sensor, by one factor in all modes; all others, frequencies and "
-        "damping unchanged."
+        "The constants of the points, or of a fixed sensor, change by one factor in all modes; all other constants, "
+        "frequencies and damping do not change."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("position_error",)

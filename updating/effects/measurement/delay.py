@@ -30,7 +30,7 @@ class TimeDelay(Effect):
     channel = "measurement"
     summary = "The response channels lag the force channel: every FRF turns in proportion to frequency."
     footprint = (
-        "Modal constants turn by minus omega times the delay; their size, frequencies, damping unchanged."
+        "The phase of the modal constants changes by minus omega times the delay; nothing else changes."
     )
     models = ("beam", "plate", "matrices")
     separated_by = "swap the channels' inputs, or measure the same signal with both"
@@ -38,7 +38,7 @@ class TimeDelay(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the delay."""
         longest = PERIODS / predictor.measured.frequency.max()
-        why = f"to {PERIODS:g} periods of the highest mode, some five samples, either way"
+        why = f"up to {PERIODS:g} periods of the highest mode, about five samples, of either sign"
         return (Parameter("delay", "s", -longest, longest, why),)
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
@@ -62,7 +62,7 @@ class TimeDelay(Effect):
         """Need complex constants."""
         if predictor.measured.phase is not None:
             return None
-        return Obstacle(Lack.DATA, "the data carry no phase of the residues")
+        return Obstacle(Lack.DATA, "the data have no phase of the residues")
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the delay."""

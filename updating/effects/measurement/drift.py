@@ -22,8 +22,8 @@ class Drift(Effect):
     channel = "measurement"
     summary = "Frequencies drift during the test, from point to point: it got warmer or colder, or a support settled."
     footprint = (
-        "Frequencies of the FRFs change by one factor for all modes, in proportion to the place in measuring order; "
-        "those of the test as a whole are those in its middle."
+        "All frequencies change by one factor, in proportion to the position in the measuring order; the frequencies "
+        "of the whole test are those at its middle."
     )
     models = ("beam", "plate", "matrices")
     phrase = "a drift during the test"

@@ -26,7 +26,7 @@ class CalibrationGain(Effect):
     summary = (
         "The calibration of the measurement chain is off: every FRF is too large or too small by one factor."
     )
-    footprint = "Modal constants by one factor; frequencies, damping and shapes unchanged."
+    footprint = "Modal constants change by one factor; frequencies, damping and shapes do not."
     models = ("beam", "plate", "matrices")
     phrase = "a wrong calibration"
     competes_with = "calibration"
@@ -46,7 +46,7 @@ class CalibrationGain(Effect):
         """Need absolute level."""
         if predictor.measured.absolute:
             return None
-        return Obstacle(Lack.DATA, "the data carry no absolute level")
+        return Obstacle(Lack.DATA, "the data have no absolute level")
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the gain."""

@@ -32,7 +32,7 @@ class Polarity(Effect):
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("swapped_points",)
-    separated_by = "look at the sign of the drive point FRF and of the points' hits again"
+    separated_by = "check the sign of the drive point FRF, and hit the points again"
     labels = ("points",)
     phrase = "a transducer of wrong polarity"
     of_sensor = True
@@ -86,7 +86,7 @@ class Polarity(Effect):
         """State whether it is a fixed sensor or points of the end that roved."""
         if "channel" in values:
             return (
-                f"The sensor {values['channel']} is reversed in sign, whichever point is hit: mounted upside down, or "
-                "its sign, or where it is the only one that of the hammer, set wrongly."
+                f"The sensor {values['channel']} is reversed in sign, whichever point is hit: it is mounted upside "
+                "down, or its sign is set wrongly (with a single sensor, possibly that of the hammer)."
             )
-        return "Some points are reversed in sign: hit from the other side, or where the sensor roved, upside down."
+        return "Some points are reversed in sign: hit from the other side, or a roving sensor mounted upside down."

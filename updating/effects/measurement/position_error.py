@@ -22,7 +22,10 @@ class PositionError(Effect):
     name = "position_error"
     channel = "measurement"
     summary = "One point was hit (or its sensor mounted) elsewhere than stated."
-    footprint = "One point's constants change as the shapes slope there; frequencies and damping unchanged."
+    footprint = (
+        "The constants of one point change in proportion to the slope of the shapes there; frequencies and damping do "
+        "not change."
+    )
     models = ("beam", "plate")
     equivalent_to = ("swapped_points", "channel_gain")
     repeats = True

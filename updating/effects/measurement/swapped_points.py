@@ -20,7 +20,9 @@ class SwappedPoints(Effect):
     name = "swapped_points"
     channel = "measurement"
     summary = "The labels of two points are exchanged."
-    footprint = "Two points' constants are exchanged in all modes; frequencies and damping unchanged."
+    footprint = (
+        "The constants of two points are exchanged in all modes; frequencies and damping do not change."
+    )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("polarity", "position_error")
     separated_by = "hit the two points again"

@@ -15,8 +15,8 @@ class ExponentialWindow(Effect):
     channel = "measurement"
     summary = "An exponential window is still in the damping: it adds one decay rate to every mode."
     footprint = (
-        "Damping ratios rise in inverse proportion to frequency, the constants of low modes turn by twice what that "
-        "adds (accelerations), and the noise behind a hit fades; shapes and stiffness stay."
+        "Damping ratios rise in inverse proportion to frequency. The phase of the constants of low modes changes by "
+        "twice that rise (accelerations). The noise after a hit decays. Shapes and stiffness do not change."
     )
     models = ("beam", "plate", "matrices")
     phrase = "an exponential window left in the data"

@@ -41,7 +41,7 @@ class Absorber(Effect):
     channel = "stiffness"
     summary = "A mass hangs on the structure by a spring: a part come loose, or a tuned absorber."
     footprint = (
-        "One mode more than the model has; the modes below it fall, those above it rise, the nearest most, and only if"
+        "The test has one mode more than the model. Modes below it fall and modes above it rise, the nearest most, if"
         " they move at the place."
     )
     phrase = "a mass on a spring"
@@ -58,7 +58,7 @@ class Absorber(Effect):
         low = lowest(predictor) / (2 * np.pi) / AWAY
         high = max(AWAY * predictor.measured.top, AWAY**2 * low)
         heavy = "from a barely detectable mass to a third of the structure's mass"
-        where = "its own mode among those of the band, or beside them"
+        where = "its own mode inside the band or close to it"
         lossy = "from steel on steel to a mode that no test distinguishes from the floor"
         return (
             *outline(predictor),
@@ -82,7 +82,7 @@ class Absorber(Effect):
         if not predictor.measured.has_shapes:
             return Obstacle(Lack.DATA, "shapes are needed to identify the mode that the model lacks")
         if predictor.measured.unpaired is None:
-            what = "it makes a mode of its own, and every measured mode is one of the model's"
+            what = "it would add a mode, but every measured mode is paired with one of the model"
             return Obstacle(Lack.DATA, what)
         return None
 

@@ -30,7 +30,7 @@ class AxialLoad(Effect):
     channel = "stiffness"
     summary = "A tension or thrust along the structure stiffens or softens it in bending."
     footprint = (
-        "Frequencies rise with tension, the lowest most: in proportion to N over the wavelength's stiffness."
+        "Frequencies rise with tension, the lowest most: by force over bending stiffness at the wavelength."
     )
     equivalent_to = ("ground_spring",)
     separated_by = "loosen one end and retighten it, or repeat the test at another temperature"

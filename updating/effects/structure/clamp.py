@@ -36,8 +36,8 @@ from updating.models.yielding import Yielding
 from updating.prediction.predict import Predictor
 
 NOT_HELD = (
-    "the node table lists no node that a support holds, with empty rows, or the matrices have rows at "
-    "no place: the motion that the supports prevent is unknown"
+    "the motion that the supports prevent is unknown: the node table lists no supported node (with empty rows), or "
+    "the matrices have rows without a place"
 )
 """Why supports of imported matrices cannot give way."""
 
@@ -97,7 +97,7 @@ class Clamp(Effect):
         if spec.kind != "plate" or not spec.clamped:
             return (stiffness,)
         size = longest(spec)
-        why = "any stretch of the clamped edge, its length and its place alike probable"
+        why = "any stretch of the clamped edge; all lengths and places are equally probable"
         ends = (("from", 0.0), ("to", size))
         return (
             stiffness,

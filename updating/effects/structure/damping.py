@@ -50,8 +50,8 @@ class UniformDamping(Effect):
     channel = "damping"
     summary = "The whole structure damps more, or less, than the model expects."
     footprint = (
-        "Damping ratios rise: as one over frequency (alpha), with frequency (beta), or all alike (loss factor);"
-        " or they all fall by one share of what is expected."
+        "Damping ratios rise in inverse proportion to frequency (alpha), in proportion to it (beta), or all by the"
+        " same amount (loss factor); or all fall by the same share of the expected damping."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("exponential_window", "fluid_damping", "damping_patch")
@@ -65,7 +65,7 @@ class UniformDamping(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the coefficients."""
         middle = _middle(predictor)
-        less = "; or less than nothing, down to what is expected"
+        less = "; or negative, down to minus the expected damping"
         lossy = f"damping ratios of {RATIOS[0]:g} to {RATIOS[1]:g} in the middle of the band{less}"
         decays = f"decays as those of windows{less}"
         low, high = (2 * ratio / middle for ratio in RATIOS)
@@ -218,9 +218,7 @@ def _check(predictor: Predictor, values: Values) -> None:
     share = adds @ np.array([values[name] for name in NAMES]) / rates
     if np.isfinite(share).all() and share.min() < -1 - NOTHING_LEFT:
         number = int(np.argmin(share)) + 1
-        raise StudyError(
-            f"uniform_damping takes more from mode {number} than the damping it is expected to have"
-        )
+        raise StudyError(f"uniform_damping removes more than the expected damping from mode {number}")
 
 
 def _whole(predictor: Predictor) -> tuple[FloatArray, FloatArray]:

@@ -48,7 +48,7 @@ class Modulus(FactorEffect):
     name = "E"
     channel = "stiffness"
     summary = "The modulus of elasticity differs from the model's by more than its tolerance."
-    footprint = "All frequencies by one factor, shapes and modal constants unchanged."
+    footprint = "All frequencies change by one factor; shapes and modal constants do not change."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("density", "thickness", "length", "clamp_rotation")
     separated_by = "absolute level (calibrated FRFs), a known added mass, or a measured density"
@@ -65,7 +65,7 @@ class Density(FactorEffect):
     name = "density"
     channel = "mass"
     summary = "The density (or a mass spread evenly) differs from the model's by more than its tolerance."
-    footprint = "All frequencies by one factor, modal constants by the square of it; shapes unchanged."
+    footprint = "All frequencies change by one factor, modal constants by its square; shapes do not change."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass", "local_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
@@ -82,7 +82,7 @@ class Thickness(FactorEffect):
     name = "thickness"
     channel = "stiffness"
     summary = "The thickness differs from the model's by more than its tolerance."
-    footprint = "All frequencies in proportion, modal constants in inverse proportion."
+    footprint = "All frequencies change in proportion, modal constants in inverse proportion."
     equivalent_to = ("E", "density", "length")
     separated_by = "a caliper; absolute level; a known added mass"
     factors = ("thickness",)
@@ -98,7 +98,7 @@ class SectionScale(FactorEffect):
     name = "section_scale"
     channel = "stiffness"
     summary = "Stiffness and mass are off by the same factor, as if the width were wrong."
-    footprint = "Frequencies and shapes unchanged, modal constants in inverse proportion."
+    footprint = "Modal constants change in inverse proportion; frequencies and shapes do not change."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("calibration_gain",)
     separated_by = "a caliper; a calibration of the measurement chain with a known mass"

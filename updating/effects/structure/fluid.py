@@ -55,7 +55,13 @@ DEEP, NEAR = 0.8, 0.3
 
 
 WALL = Parameter(
-    "wall", "-", 0.0, 1.0, "a clamp is neither an endless wall nor nothing", default=1.0, natural=EDGES
+    "wall",
+    "-",
+    0.0,
+    1.0,
+    "0: water flows round the clamp; 1: the clamp is an endless wall",
+    default=1.0,
+    natural=EDGES,
 )
 """Share of an endless wall in the clamp: the added mass lies between that with the wall and that without. Of paper A's
 plate no wall takes 0.1 to 6.5 % off its twelve lowest modes."""
@@ -68,8 +74,8 @@ class FluidAddedMass(Effect):
     channel = "mass"
     summary = "The surrounding fluid moves with the structure and adds its inertia."
     footprint = (
-        "Frequencies fall strongly, modes of long waves more than modes of short waves and of torsion, and the level "
-        "falls with them; less under a near surface, more above a near bottom, which long waves feel from farther off."
+        "Frequencies fall strongly, more for modes of long waves than for short waves and torsion, and the level falls "
+        "with them. A near surface reduces the fall, a near bottom increases it, for long waves from farther away."
     )
     equivalent_to = ("density",)
     separated_by = "the same test dry; or a second depth of immersion"
@@ -132,8 +138,8 @@ class FluidDamping(Effect):
     channel = "damping"
     summary = "The surrounding fluid is viscous: its boundary layer takes energy out of every mode."
     footprint = (
-        "Damping ratios rise, with the inverse root of frequency; "
-        "each frequency falls by as much as its ratio rises."
+        "Damping ratios rise, in proportion to one over the root of frequency; the relative fall of each frequency "
+        "equals the rise of its damping ratio."
     )
     equivalent_to = ("uniform_damping",)
     separated_by = "the same test dry; or in a fluid of the same density and another viscosity"
@@ -177,7 +183,7 @@ def _distance(predictor: Predictor, name: str) -> Parameter:
     """Return a distance and its prior [m]."""
     low = NEAREST * shorter_side(predictor.spec)
     high = FARTHEST * max(predictor.spec.length, predictor.spec.width)
-    why = "from a tenth of the shorter side, hardly under the surface or nearly aground, to three of the longer one"
+    why = "from a tenth of the shorter side (close to surface or bottom) to three times the longer side"
     return Parameter(name, "m", low, high, why, log=True, default=math.inf, natural=EDGES)
 
 

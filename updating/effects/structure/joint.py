@@ -48,9 +48,7 @@ class Joint(Effect):
     name = "joint"
     channel = "stiffness"
     summary = "A joint between two parts is softer (loose) or stiffer than modelled."
-    footprint = (
-        "Frequencies fall, or rise, in the modes that strain the joint; the parts beside it keep their own."
-    )
+    footprint = "Frequencies fall, or rise, in the modes that strain the joint; local modes of the parts do not change."
     phrase = "a joint"
     models = ("matrices",)
     equivalent_to = ("local_stiffness",)

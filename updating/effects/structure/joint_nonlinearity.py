@@ -78,10 +78,10 @@ class JointNonlinearity(Effect):
     channel = "stiffness"
     summary = "A joint softens or stiffens with the force: frequencies follow the level of the hits."
     footprint = (
-        "Frequencies of single hits change in proportion to their peak force, each by the joint's share of its strain"
-        " energy. Its slope is the mean over the modes up to the highest measured; joint is 1 for a clamp that turns,"
-        " 2 for one that shifts, 3 for a stretch between two clamps, 0 for one not known, in which all modes change"
-        " alike; of imported matrices, 1 or 2 for the joint of the name at."
+        "The frequencies of single hits change in proportion to their peak force, each mode by the joint's share of"
+        " its strain energy. The slope is the mean over the modes up to the highest measured. The parameter joint is"
+        " 1 for a clamp that turns, 2 for a clamp that shifts, 3 for stretching between two clamps, and 0 for an"
+        " unknown joint, where all modes change alike. For imported matrices it is 1 or 2, and at names the joint."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ()

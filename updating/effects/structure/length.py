@@ -16,7 +16,9 @@ class Length(Effect):
     channel = "stiffness"
     summary = "The free length differs from the model's; at a clamp, the structure bends some way inside it."
     keeps_clamps = True
-    footprint = "All frequencies by nearly one factor; points move relative to the clamp, so shapes show it."
+    footprint = (
+        "All frequencies change by nearly one factor; points move relative to the clamp, so shapes show it."
+    )
     equivalent_to = ("E", "density", "thickness", "clamp_rotation")
     separated_by = "shapes at points near the clamp, absolute level, or a free-free test of the same specimen"
     phrase = "the length"

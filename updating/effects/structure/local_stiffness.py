@@ -66,7 +66,7 @@ class LocalStiffness(EitherWay):
 
     def changed(self, predictor: Predictor) -> Parameter:
         """Return the share of the stiffness that is lost."""
-        why = "from ten times as stiff, over nothing, to nearly severed; uniform in log compliance on either side"
+        why = "from ten times as stiff, through no change, to nearly severed; uniform in log compliance on either side"
         return Parameter("loss", "-", *LOSSES, why, natural=EDGES)
 
     def regions(self, predictor: Predictor) -> Sequence[str]:

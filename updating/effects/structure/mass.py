@@ -115,11 +115,11 @@ class SensorMass(Effect):
 
     name = "sensor_mass"
     channel = "mass"
-    summary = "The mounted sensor (each of them) loads the structure and is not in the model."
+    summary = "The mass of the mounted sensor (of each sensor) is not in the model."
     keeps_clamps = True
     footprint = (
         "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
-        " Its bulk is its rotary inertia over that of a steel cube of its mass."
+        " The parameter bulk is its rotary inertia, relative to a steel cube of the same mass."
     )
     phrase = "the mass of the sensor"
     models = ("beam", "plate", "matrices")
@@ -142,7 +142,7 @@ class SensorMass(Effect):
             return ()
         far, why = (
             FARTHEST * sigma,
-            "as well as the places of points are known, three standard deviations at most",
+            "within three standard deviations of the stated places of points",
         )
         names = AXES_AWAY[: predictor.spec.dim]
         return tuple(Astray(name, "m", -far, far, why, default=0.0, natural=EDGES) for name in names)
@@ -177,7 +177,8 @@ class SensorMass(Effect):
         if len(sensor_places(predictor)):
             return None
         return Obstacle(
-            Lack.DATA, "the data do not state where a sensor is mounted; a [[model.mass]] of 0 kg would"
+            Lack.DATA,
+            "the data do not state where a sensor is mounted; state its place by a [[model.mass]] of 0 kg",
         )
 
     def state(self, predictor: Predictor, values: Values) -> State:
@@ -201,11 +202,11 @@ class LumpedMass(Effect):
 
     name = "lumped_mass"
     channel = "mass"
-    summary = "A body is fixed to the structure at one place that the model does not hold."
+    summary = "A body that is not in the model is fixed to the structure at one place."
     keeps_clamps = True
     footprint = (
         "Frequencies fall in the modes that move there, not in those with a node there; shapes shrink there."
-        " Its bulk is its rotary inertia over that of a steel cube of its mass."
+        " The parameter bulk is its rotary inertia, relative to a steel cube of the same mass."
     )
     phrase = "a mass left out of the model"
     models = ("beam", "plate", "matrices")
@@ -367,7 +368,7 @@ def _named(point: FloatArray) -> dict[str, float]:
 
 def _bulk(default: float) -> Parameter:
     """Return the rotary inertia about the body's own middle and its height above the surface."""
-    why = "rotary inertia over a steel cube's of its mass: from a flat disc to a tall body of light metal"
+    why = "rotary inertia, relative to a steel cube of the same mass: from a flat disc to a tall body of light metal"
     return Parameter("bulk", "-", 0.0, LARGEST, why, default=default, natural=EDGES)
 
 

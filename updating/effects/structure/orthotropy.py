@@ -32,12 +32,10 @@ class Orthotropy(Effect):
 
     name = "orthotropy"
     channel = "stiffness"
-    summary = (
-        "The plate's stiffness across, or in twist, is not that along (rolled sheet, wood, laminate, ribs)."
-    )
+    summary = "The plate's stiffness across, or in twist, differs from that along (rolled sheet, wood, laminate, ribs)."
     footprint = (
-        "Modes that bend across shift with the ratio, modes of torsion half as far, modes that bend along hardly at "
-        "all; the ratio of shear moves modes of torsion alone, the coupling those that bend both ways."
+        "The ratio shifts modes that bend across, modes of torsion half as far, and modes that bend along hardly at "
+        "all. The ratio of shear shifts modes of torsion only, the coupling modes that bend both ways."
     )
     models = ("plate",)
     separated_by = "strips cut along, across and at 45 degrees, or the data sheet of the sheet"
@@ -56,7 +54,7 @@ class Orthotropy(Effect):
         )
         coupling = (
             "from woven carbon and unidirectional laminates (0.15 to 0.3) over rolled sheet (0.85 to 1.15) to layers "
-            "at 45 degrees (2.5), short of a sheet that bends into a saddle for nothing"
+            "at 45 degrees (2.5), below the limit at which bending into a saddle needs no energy"
         )
         return (
             Parameter("ratio", "-", 1 / 25, 25.0, why, log=True),

@@ -60,9 +60,9 @@ class DampingPatch(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return place, extents, losses, and what the layer adds of mass and stiffness."""
-        lossy = "from tape, which must damp to be one, to a constrained layer that covers the part well"
-        heavy = "share of the bare structure's mass there: a layer, no body"
-        stiff = "share of the bare structure's stiffness there: a layer, no rib"
+        lossy = "from tape with little damping to a constrained layer that covers the part well"
+        heavy = "share of the bare structure's mass there: a layer, not a body"
+        stiff = "share of the bare structure's stiffness there: a layer, not a rib"
         hertz = predictor.measured.frequency
         middle = 2 * np.pi * float(np.sqrt(hertz.min() * hertz.max()))
         low, high = LOSSES

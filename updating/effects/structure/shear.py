@@ -19,8 +19,8 @@ class Shear(Effect):
     channel = "stiffness"
     summary = "The theory of the model leaves out shear deformation and rotary inertia."
     footprint = (
-        "Frequencies fall, in proportion to the square of the thickness over the wavelength; on plates with free edges "
-        "those of modes that twist fall most, in proportion to the thickness."
+        "Frequencies fall in proportion to the square of thickness over wavelength. On plates with free edges, modes "
+        "of torsion fall most, in proportion to the thickness."
     )
     models = ("beam", "plate")
     separated_by = 'theory = "timoshenko" (beams) or "mindlin" (plates); nothing has to be measured'

@@ -88,7 +88,7 @@ class GroundSpring(Effect):
         spec = predictor.spec
         low, high = (share * own_stiffness(predictor) for share in STIFFNESS)
         held = "from the softest cable that repeated tests detect to a stop"
-        why = "a point is a form of its own; a longer one is the whole structure"
+        why = "a longer one is the whole structure; a spring at a point is compared separately"
         size = max(spec.length, spec.width) if spec.kind == "plate" else spec.length
         lossy = "from hardly detectable to a dashpot that all but holds the lowest mode"
         extent = SHORTEST * spec.length, size

@@ -42,12 +42,12 @@ CORNERS = ((0, 0), (1, 1), (0, 1), (1, 0))
 
 
 HELD = (
-    "the model does not move freely: it is held, or has its cords in it; give it without them, or "
-    "state them as a region or a hypothesis; a ground_spring is used beside supports"
+    "the model is not free: it is supported, or already contains its cords; give it without cords, or state them as "
+    "a region or a hypothesis (springs beside supports are ground_spring)"
 )
 """Why a model that has no rigid-body mode hangs on no cords that are missing in it."""
 
-NOWHERE = "the node table has no ends along which they move, and no node sets, at which cords might hold"
+NOWHERE = "the node table has no place for cords: neither ends that can move along an axis, nor node sets"
 """Why a free model hangs nowhere."""
 
 
@@ -62,7 +62,7 @@ class Suspension(Effect):
     name = "suspension"
     channel = "stiffness"
     summary = "The cords on which the specimen hangs hold and damp it."
-    footprint = "Frequencies rise and damping, the lowest modes most, and hardly where cords sit at nodes."
+    footprint = "Frequencies and damping rise, in the lowest modes most, and hardly where cords sit at nodes of a mode."
     phrase = "the cords of the suspension"
     models = ("beam", "plate", "matrices")
     named = ("at", "along")
@@ -79,7 +79,7 @@ class Suspension(Effect):
         low, high = (_cord(predictor, share, n) for share, n in zip(BOUNCE, counts, strict=True))
         least, most = (share * mass * first / n for share, n in zip(LOSSY, counts, strict=True))
         held = f"from a bounce at {BOUNCE[0]:g} of the first elastic frequency to one at {BOUNCE[1]:g}"
-        lossy = "from hardly detectable to cords on which nothing bounces twice"
+        lossy = "from hardly detectable to cords so damped that the specimen does not bounce twice"
         sizes = (
             Parameter("stiffness", "N/m", low, high, held, log=True),
             Parameter(
@@ -123,7 +123,7 @@ class Suspension(Effect):
             return None
         return Obstacle(
             Lack.MODEL,
-            "the model is clamped: it does not hang on cords; a ground_spring is used beside clamps",
+            "the model is clamped and does not hang on cords (springs beside clamps are ground_spring)",
         )
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:

@@ -36,8 +36,8 @@ class Taper(Effect):
     channel = "stiffness"
     summary = "The thickness changes along the structure (a wedge, wear, a casting's draft), and the model's does not."
     footprint = (
-        "At a clamp on the thicker end the lowest frequency rises, and less so the next, with their shapes; of a free "
-        "structure frequencies hardly change, and shapes lean to the thinner end."
+        "With the clamp at the thicker end the lowest frequency rises most, the next less, and their shapes change. On "
+        "a free structure frequencies hardly change, and shapes lean to the thinner end."
     )
     separated_by = "a caliper at both ends"
     elsewhere = MappingProxyType({"matrices": "imported matrices have no thickness"})
@@ -65,7 +65,7 @@ class Taper(Effect):
         slope = values["slope"]
         if not abs(slope) < NOTHING_LEFT:
             raise StudyError(
-                f"taper: slope = {slope:g} leaves nothing of one end; its size is below {NOTHING_LEFT:g}"
+                f"taper: slope = {slope:g} leaves no thickness at one end; give a slope below {NOTHING_LEFT:g} in size"
             )
         stiffness, mass = (
             [slope**order * self._unit(predictor, kind, order) for order in range(1, CUBE + 1)]
