@@ -121,7 +121,7 @@ def _supposed(
     ]
     if all(changed):
         raise StudyError(
-            f"[[hypothesis]] {table.name!r}: {what} is the model's own: the hypothesis changes nothing"
+            f"[[hypothesis]] {table.name!r}: {what} is identical to the model's own, so it changes nothing"
         )
     return [(None if same else matrix, what) for matrix, same in zip(supposed, changed, strict=True)]
 

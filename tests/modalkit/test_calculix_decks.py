@@ -290,7 +290,7 @@ def test_a_deck_may_be_what_is_supposed(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("lines", "what"),
     [
-        (block(), "the model's own: the hypothesis changes nothing"),
+        (block(), "identical to the model's own, so it changes nothing"),
         (block(across=2), "give a deck on the same mesh"),
     ],
 )

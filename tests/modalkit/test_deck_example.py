@@ -64,7 +64,7 @@ REFUSED = {
     "thickness": ('[update]\nparameters = ["WEB.thickness"]\n', "it has no thickness to change"),
     "frf": (
         '[update]\nmethod = "frf"\nparameters = ["WEBFACE.y"]\n',
-        "WEBFACE.y is a number of a deck, which only",
+        "WEBFACE.y is a number of a deck, which is updated",
     ),
     "node set": ('[update]\nparameters = ["EDGE.y"]\n', "no node set EDGE; there are: ALL, CLAMP, WEBFACE"),
 }

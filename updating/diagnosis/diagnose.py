@@ -181,7 +181,7 @@ def _searched(
     own = {effect.name: effect for one in problem.specimens for effect in hypotheses_of(one.predictor.spec)}
     effects = _examined(problem, library, own, accepted)
     found = search(problem, effects, steps)
-    steps.begin("looking for modes that the test has not")
+    steps.begin("looking for modes that are missing in the test")
     anew = with_unmeasured_modes(problem, found, effects)
     if anew is not None:
         again = search(anew[0], effects, steps)

@@ -35,14 +35,14 @@ def on_fit(
     What is left of fewer than ``fewest`` data beyond its parameters scatters by a third, so that it is weak evidence
     on the noise.
     """
-    notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in inconsistent[:1]]
+    notes = [f"{' + '.join(leader.names)}: {split}, so it is not named" for split in inconsistent[:1]]
     if not significant:
         return notes
     beyond = len(leader.best.comparison.residual) - len(leader.best.coordinates)
     if leader.names and beyond < fewest:
         notes.append(
-            f"{' + '.join(leader.names)} leaves only {beyond} data to test its fit, so that the fit depends on the "
-            "stated noise; measure more modes, or shapes"
+            f"only {beyond} data are left to test the fit of {' + '.join(leader.names)}, so it depends on the stated "
+            "noise; measure more modes, or shapes"
         )
     return notes
 

@@ -156,11 +156,11 @@ def _without_odd(
     better = max(s.solved.discrepancy for s in last_steps(again)) < ODD_GAIN * off
     nodes, what = (
         specimen.measured.nodes,
-        "is left out" if better else "was kept, because the others do not agree better without it",
+        "was left out" if better else "was kept, because the other FRFs do not fit better without it",
     )
     statement = [
         f"the FRF at node {nodes[frfs.seen[i]]} by the force at node {nodes[frfs.hit[i]]} has {how} of the others, "
-        f"relative to the model, and {what}; check its channel, calibration and direction"
+        f"relative to the model. It {what}; check its channel, calibration and direction"
         for i, how in sorted(found.items())
     ]
     specimen = replace(specimen, warnings=(*specimen.warnings, *statement))

@@ -108,9 +108,7 @@ class RegionEvidence(Localiser):
     summary: ClassVar[str] = (
         "Marginal likelihood of a change of one region, severity and nuisances integrated."
     )
-    needs: ClassVar[str] = (
-        "Needs frequencies, shapes to separate mirrored regions, and tolerances as they are."
-    )
+    needs: ClassVar[str] = "Needs frequencies, shapes to separate mirrored regions, and realistic tolerances."
     misleads: ClassVar[str] = (
         "Misleads where more than one region is wrong, or a support, a fluid or the measurement: that is "
         "attributed to the region with the most similar effect."

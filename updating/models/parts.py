@@ -57,9 +57,9 @@ class Region:
         for name in POSITIVE + DAMPERS:
             value, least = getattr(self, name), "above zero" if name in POSITIVE else "not negative"
             if value is not None and not (0 < value < math.inf or (value == 0 and name in DAMPERS)):
-                raise StudyError(f"model: {whose} has {name} = {value:g}; it is finite and {least}")
+                raise StudyError(f"model: {whose} has {name} = {value:g}; it must be finite and {least}")
         if kind == "beam" and self.y is not None:
-            raise StudyError(f"model: {whose} has y; a beam reaches along x alone")
+            raise StudyError(f"model: {whose} has y, but a beam has x only")
         if kind == "plate" and (self.area, self.inertia, self.shear_coefficient) != (None, None, None):
             raise StudyError(f"model: {whose} has area or inertia; those are of beams")
         for axis, ends in {"x": self.x, "y": self.y or ()}.items():

@@ -153,8 +153,8 @@ class Spec(Displayed):
             raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
         if math.prod(self.elements) > MOST_ELEMENTS:
             raise StudyError(
-                f"model: elements = {list(self.elements)} are more than {MOST_ELEMENTS}; fewer are as exact and "
-                "fit the memory"
+                f"model: elements = {list(self.elements)} are more than {MOST_ELEMENTS}; fewer are as accurate and "
+                "need less memory"
             )
         for mass in self.masses:
             mass.check(self.dim, self.called)

@@ -108,7 +108,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     if alone:
         lost.append(MOSTLY_ALONE)
     if trusted is not None:
-        lost.append(f"modes are paired without {left_out(measured, trusted)}, which spoils their shapes")
+        lost.append(f"modes are paired without {left_out(measured, trusted)}, which distorts their shapes")
     unpaired = None if keep.all() else replace(measured.modes(~keep), trusted=trusted)
     if measured.partners is not None:
         measured = replace(measured, partner_constants=prediction.constants[:, order])

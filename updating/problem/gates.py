@@ -35,13 +35,13 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
         doubt = (
             f"; each frequency may be off by up to {_percent(IMPORTED_MESH_DOUBT)} (1 sigma)" if solid else ""
         )
-        return [f"imported matrices cannot be refined: whether they have converged is not examined{doubt}"]
+        return [f"the mesh of imported matrices cannot be refined, so its convergence is not checked{doubt}"]
     noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
     notes = []
     worst = int(np.argmax(np.abs(found.mesh) / noise))
     if abs(found.mesh[worst]) > noise[worst]:
         notes.append(
-            f"the mesh alone moves mode {worst + 1} by {_percent(found.mesh[worst])}, more than the noise of "
+            f"the error of the mesh in mode {worst + 1} is {_percent(found.mesh[worst])}, more than the noise of "
             f"{_percent(noise[worst])}: use more elements"
         )
     worst = int(np.argmax(np.abs(found.theory) / noise))
@@ -68,8 +68,8 @@ def on_reduction(predictor: Predictor, count: int) -> list[str]:
         return []
     worst = float(reduction_error(reduced, every_second(reduced), count).max())
     return [
-        f"{size} shapes stand for {reduced.structure.n_dofs} degrees of freedom: frequencies are at most "
-        f"{_percent(worst)} off where every second region has {CHANGED:g} of its stiffness"
+        f"the model of {reduced.structure.n_dofs} degrees of freedom is reduced to {size} shapes: frequencies are off "
+        f"by at most {_percent(worst)}, checked with every second region at {CHANGED:g} of its stiffness"
     ]
 
 
@@ -103,8 +103,8 @@ def on_modes(
     skipped = missing_mode(measured.frequency, predicted)
     if skipped is not None:
         notes.append(
-            f"without shapes, modes are paired by rank; from mode {skipped + 1} on they fit far better as if the test "
-            f"had missed the model's mode {skipped + 1} at {hertz(predicted[skipped])}: check that none is missing"
+            f"without shapes, modes are paired by rank. From mode {skipped + 1} on they fit far better if the test "
+            f"missed the model's mode {skipped + 1} at {hertz(predicted[skipped])}: check whether a mode is missing"
         )
     return notes
 

@@ -152,7 +152,7 @@ def matched(
     places = spec.imported.places
     if (stated := _thousandfold(points, spec)) and len(points) > 1:
         raise StudyError(
-            f"the test spans {quantity(np.ptp(points, axis=0).max(), 'm')} of the model's axes: {stated}"
+            f"the test spans {quantity(np.ptp(points, axis=0).max(), 'm')} along the model's axes: {stated}"
         )
     taken, between, moved = points.copy(), dict[int, float](), dict[int, float]()
     for i, (point, (node, direction)) in enumerate(zip(points, keys, strict=True)):

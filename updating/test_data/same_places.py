@@ -69,11 +69,13 @@ def unmatched(test: Measured, baseline: Measured) -> tuple[str, ...]:
     named = ", ".join(map(str, nodes[:NAMED])) + (", ..." if len(nodes) > NAMED else "")
     where = _where(test, baseline, nodes)
     which = (
-        f"point(s) {named} are not among its points{where}" if nodes else "its points were joined otherwise"
+        f"point(s) {named} are not among its points{where}"
+        if nodes
+        else "its FRFs connect other pairs of points"
     )
     return (
-        f"{len(lost)} of the test's {len(test.seen)} FRFs were not measured in it: {which}; what the model misses of "
-        "shapes there stays unknown",
+        f"{len(lost)} of the test's {len(test.seen)} FRFs were not measured in it: {which}. The errors of the model's "
+        "shapes there remain unknown",
     )
 
 
@@ -84,5 +86,5 @@ def _where(test: Measured, baseline: Measured, nodes: list[int]) -> str:
             away: FloatArray = (
                 test.points[test.nodes.index(node)] - baseline.points[baseline.nodes.index(node)]
             )
-            return f" (number {node} lies {quantity(float(np.linalg.norm(away)), 'm')} from where it has it)"
+            return f" (number {node} lies {quantity(float(np.linalg.norm(away)), 'm')} from its place in the baseline)"
     return f" (none lies within {quantity(reach(test, baseline), 'm')})"

@@ -112,9 +112,9 @@ def _with_level(calibration: float) -> tuple[str, ...]:
     if calibration > UNKNOWN_LEVEL:
         return ()
     return (
-        "the shapes are stated to be mass-normalised: their level is compared too, with calibration = "
-        f"{calibration:g} for the doubt in it; if the modal masses were not measured (many programs write "
-        "1), set calibration = 1",
+        "the shapes are stated to be mass-normalised: their level is compared, too, with the "
+        f"uncertainty calibration = {calibration:g}. If the modal masses were not measured (many programs write 1), "
+        "set calibration = 1",
     )
 
 
@@ -130,8 +130,8 @@ def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
     if not missing:
         return ()
     return (
-        f"{missing} of {len(modes)} frequencies came without a sigma: they are taken to be as good as the stated "
-        f"repeatability, {100 * repeatability:g} %; add a column sigma [Hz] if they are worse",
+        f"{missing} of {len(modes)} frequencies have no sigma: the stated repeatability, {100 * repeatability:g} %, is "
+        "taken as their uncertainty; add a column sigma [Hz] if it is larger",
     )
 
 

@@ -82,13 +82,13 @@ def _check_data(parameter_set: ParameterSet, *, lean: bool) -> None:
     ]
     if lean and dampers:
         raise StudyError(
-            f"update: {dampers[0]} is a coefficient of damping, on which frequencies do not depend; use "
+            f"update: {dampers[0]} is a coefficient of damping, which does not change frequencies; use "
             'method = "frf"'
         )
     numbers = [p.name for p in parameter_set.model_parameters if p.of_deck is not None]
     if numbers and not lean:
         raise StudyError(
-            f"update: {numbers[0]} is a number of a deck, which only frequencies and shapes update; use "
+            f"update: {numbers[0]} is a number of a deck, which is updated by frequencies and shapes only; use "
             'method = "eigenvalue"'
         )
 
@@ -174,7 +174,7 @@ def build_system(
     free = int(np.sum(system.prior == 0))
     if free > system.count:
         raise StudyError(
-            f"update: {free} parameters without a tolerance to hold them and {system.count} frequencies; name fewer "
+            f"update: {free} parameters without a tolerance but only {system.count} frequencies; name fewer "
             'parameters, or use weights = "covariance" with [tolerances]'
         )
     return system

@@ -75,7 +75,7 @@ def test_modes_without_sigma_are_as_good_as_the_repeatability(
 ) -> None:
     found, _ = answer("beam_dry", "frequency\n" + "".join(f"{f}\n" for f in BEAM))
     assert found["cause"]["verdict"] == "class"
-    assert any("came without a sigma" in warning for warning in found["warnings"])
+    assert any("have no sigma" in warning for warning in found["warnings"])
     assert found["gap"]["modes"][0]["sigma_percent"] == pytest.approx(0.3)
 
 

@@ -21,7 +21,7 @@ def diagnosis_with(kind: str, verdict: str, *, modes: int = 6, points: tuple[int
         {"test [Hz]": np.linspace(20, 1800, modes), **dict.fromkeys(names, values)}, index=range(1, modes + 1)
     )
     table.loc[2, "damping [sigma]"] = np.nan
-    band = "The gap is carried most by the shape and level of modes 2 to 4 (168.8 to 954.9 Hz): up to 8.08 sigma."
+    band = "The gap is largest in the shape and level of modes 2 to 4 (168.8 to 954.9 Hz): up to 8.08 sigma."
     by = "regions" if verdict == "unknown" else "explanations"
     return replace(plain, where=replace(plain.where, modes=table, band=band, points=points, zones_by=by))
 

@@ -192,7 +192,7 @@ def test_a_baseline_has_the_keys_of_a_test(tmp_path: Path) -> None:
         (TEST + BEAM + "[model.damping]\nbeta = 1e300\n", r"model\.damping\.beta: .*less than 1000"),
         (TEST + "[environment]\nfluid_density = 1e300\n", r"environment\.fluid_density: .*less than 30000"),
         (TEST + "position_sigma = 1e300\n", r"test\.position_sigma"),
-        (TEST + BEAM + REGION + "y = [0.0, 0.1]\n", r"region 'a' has y; a beam reaches along x alone"),
+        (TEST + BEAM + REGION + "y = [0.0, 0.1]\n", r"region 'a' has y, but a beam has x only"),
         (TEST + PLATE + REGION + "area = 1e-4\n", r"area or inertia; those are of beams"),
         (TEST + BEAM + REGION.replace("0.1]", "0.1, 0.2, 0.3, 0.4]"), r"model\.region\.0\.x"),
         (TEST + BEAM + REGION.replace("0.1]", "0.7]"), r"region 'a': x = 0\.7 m is off the beam"),

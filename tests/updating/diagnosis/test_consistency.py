@@ -54,9 +54,9 @@ def test_few_data_are_a_warning() -> None:
     few = replace(test.modes(np.arange(2)), seen=test.seen[:1], hit=test.hit[:1])
     few = replace(few, constants=few.constants[:1], constants_sigma=few.constants_sigma[:1], phase=None)
     warnings = diagnose(case_of(few, BEAM), library=[LIBRARY["E"], LIBRARY["length"]]).warnings
-    assert any("data to test its fit" in warning for warning in warnings)
+    assert any("data are left to test the fit" in warning for warning in warnings)
     many = diagnose(case_of(test, BEAM), library=[LIBRARY["E"], LIBRARY["length"]]).warnings
-    assert not any("data to test its fit" in warning for warning in many)
+    assert not any("data are left to test the fit" in warning for warning in many)
 
 
 def test_a_half_without_any_mode_that_has_a_partner_is_no_half() -> None:

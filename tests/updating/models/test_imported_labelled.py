@@ -120,11 +120,11 @@ LOST = {
     "the first column": (lambda lines: [*lines[:3], *lines[4:]], "without a column before it"),
     "the first column run into its header": (
         lambda lines: [*lines[:3], "DMIG                 10               3 1.0D+06", *lines[5:]],
-        "line 4: no header of a matrix",
+        "line 4: neither the header of a matrix",
     ),
     "another name": (
         lambda lines: [x.replace("DMIG*   KAAX", "DMIG*   KAA1") for x in lines],
-        "without a header",
+        "has no header",
     ),
     "a number too long": (
         lambda lines: [x.replace("0D+0", "000000D+0") for x in lines],

@@ -107,7 +107,9 @@ def test_several_pairs_are_listed_with_the_key_to_write(tmp_path: Path) -> None:
 
 def test_a_name_for_a_file_without_names_is_refused(tmp_path: Path) -> None:
     sparse.save_npz(tmp_path / "k.npz", K)
-    with pytest.raises(StudyError, match="stiffness_name = 'KAA', and its matrix has no name"):
+    with pytest.raises(
+        StudyError, match=r"stiffness_name = 'KAA' is for .*; a matrix in this format has no name"
+    ):
         read_matrix(tmp_path / "k.npz", name="KAA")
 
 
@@ -183,7 +185,7 @@ def test_rows_beside_nodes_and_directions_are_refused_by_what_they_are(tmp_path:
     nodes = places(tmp_path / "nodes.csv")
     for stiffness, mass in ((by_rows, named), (named, by_rows)):
         with pytest.raises(
-            StudyError, match=r"free\.pch: its entries name nodes .* and those of free\.op4 have rows"
+            StudyError, match=r"free\.pch: its entries are given by node .* those of free\.op4 by row"
         ):
             read_imported(stiffness, mass, nodes)
 

@@ -217,7 +217,7 @@ def test_matrices_in_other_units_are_taken_to_si(
     np.testing.assert_allclose(found.stiffness_parts[0].toarray(), K.toarray(), rtol=1e-7, atol=1e-3)
     np.testing.assert_allclose(found.mass.toarray(), M.toarray(), rtol=1e-7, atol=1e-12)
     np.testing.assert_allclose(found.nodes.places, table.places, atol=1e-12)
-    with pytest.raises(StudyError, match="no units 'furlong'"):
+    with pytest.raises(StudyError, match="unknown units 'furlong'"):
         read_imported(*files, units="furlong")
 
 

@@ -68,7 +68,10 @@ def test_points_that_a_baseline_lacks_are_said() -> None:
     _, warnings = pose(case_of(test, baseline=fewer))
     (message,) = [w for w in warnings if "were not measured in it" in w]
     assert message.startswith(f"baseline: 2 of the test's {len(test.seen)} FRFs")
-    assert "point(s) 1, 2 are not among its points (number 1 lies 20 mm from where it has it)" in message
+    assert (
+        "point(s) 1, 2 are not among its points (number 1 lies 20 mm from its place in the baseline)"
+        in message
+    )
 
 
 def test_the_same_number_at_another_place_is_another_point() -> None:
@@ -85,7 +88,7 @@ def test_points_whose_places_are_known_to_a_millimetre_may_differ_by_some() -> N
     precise = [replace(one, position_sigma=1e-4) for one in (test, shifted)]
     assert len(same_rows(*precise)[0]) == 0
     (message,) = unmatched(*precise)
-    assert "3 mm from where it has it" in message
+    assert "3 mm from its place in the baseline" in message
 
 
 def test_shapes_alone_have_no_rows() -> None:

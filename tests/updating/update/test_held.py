@@ -37,7 +37,7 @@ def test_a_loose_storey_held_at_its_nominal_stiffness_is_held_by_its_tolerance()
     assert "`bounds.storey_3.E` about that value or a tolerance of `storey_3.E = 1`" in said
     assert "HELD BY ITS TOLERANCE" in tight.report()
     assert "NOT DETERMINED" not in tight.report()
-    assert "weaker than the prior knowledge" not in tight.report()
+    assert "less precisely than the prior knowledge" not in tight.report()
 
 
 @pytest.mark.parametrize(

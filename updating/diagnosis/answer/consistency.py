@@ -61,7 +61,7 @@ class Split:
 
     def __str__(self) -> str:
         """Return it as a clause."""
-        return f"{self.parts} want {self.parameter} at sizes {self.sigma:.2g} sigma apart"
+        return f"{self.parts} require values of {self.parameter} that are {self.sigma:.2g} sigma apart"
 
 
 def splits(

@@ -120,7 +120,7 @@ def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str], *, no
         which = f"of mode {modes[0] + 1} ({hertz(at[0])})"
     else:
         which = f"of modes {modes[0] + 1} to {modes[-1] + 1} ({bare_hertz(at[0])} to {hertz(at[-1])})"
-    return f"The gap is carried most by the {what} {which}: up to {number(column.max())} sigma."
+    return f"The gap is largest in the {what} {which}: up to {number(column.max())} sigma."
 
 
 def _band(values: FloatArray, bar: float) -> IntArray:

@@ -265,5 +265,5 @@ def _note(problem: SpecimenProblem, order: IntArray) -> str:
     stated = "; ".join(f"{number} {where}" for where, number in counts.items())
     return (
         f"the frequencies fit only if the test lacks modes of the model: {stated}. Hit and measure at other points to "
-        "find these, or state [test] pairs; what is stated below holds for this pairing"
+        "find these, or state [test] pairs. The results below assume this pairing"
     )

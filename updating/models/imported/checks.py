@@ -54,7 +54,7 @@ def symmetric(matrix: Sparse, source: str) -> Sparse:
         i, j = int(difference.row[worst]), int(difference.col[worst])
         raise StudyError(
             f"{source}: not symmetric: row {i + 1}, column {j + 1} holds {matrix[i, j]:.6g} and its mirror image "
-            f"{matrix[j, i]:.6g}; gyroscopic, follower or contact terms cannot be in it"
+            f"{matrix[j, i]:.6g}; gyroscopic, follower or contact terms are not supported"
         )
     return Sparse((matrix + matrix.T) / 2)
 

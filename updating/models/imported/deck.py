@@ -68,7 +68,7 @@ class Deck:
             return [range(int(name), int(name) + 1)]
         if name.upper() not in self.sets:
             raise StudyError(
-                f"{where}: no *NSET {name}; define it before, or write a node table (CSV) instead"
+                f"{where}: no *NSET {name} above this line; define it there, or write a node table (CSV) instead"
             )
         return self.sets[name.upper()]
 
@@ -76,7 +76,7 @@ class Deck:
         """Yield the nodes among them; as many steps as there are nodes or numbers, whichever are fewer."""
         for numbers in self.ranges(name, where):
             if len(numbers) == 1 and numbers[0] not in self.nodes:
-                raise StudyError(f"{where}: node {numbers[0]} is in no *NODE card before")
+                raise StudyError(f"{where}: node {numbers[0]} is in no *NODE card above this line")
             few, many = (
                 (numbers, self.nodes) if len(numbers) < len(self.nodes) else (self.nodes.keys(), numbers)
             )
@@ -106,7 +106,7 @@ def read_deck(path: Path) -> Deck:
             filled = False
             continue
         if card == "*END STEP":
-            raise StudyError(f"{where}: {line[:40]!r} follows the end of a step and belongs to no card")
+            raise StudyError(f"{where}: {line[:40]!r} stands after *END STEP and belongs to no card")
         filled = True
         if card in ("*BOUNDARY", "*TRANSFORM"):  # a line stated twice holds nothing more
             if (once := (card, options.get("NSET", ""), line.upper())) in seen:
@@ -165,7 +165,7 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
     if not _NAME.fullmatch(card) or any(option.isdecimal() for option in options):
         raise StudyError(f"{where}: {line[:40]!r} is not a card; the file is damaged or cut short")
     if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
-        raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
+        raise StudyError(f"{where}: {line[:80]} is not supported; write a node table (CSV) instead")
     for word, known in ((card, FOLLOWED), *((option, OPTIONS) for option in options)):
         plain = " ".join(word.split())[:40]
         close = [one for one in known if _lost_a_piece(plain, one)] or difflib.get_close_matches(
@@ -176,7 +176,7 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
     strange = [option for option in options if option and option not in KNOWN_OPTIONS.get(card, options)]
     if strange:
         raise StudyError(
-            f"{where}: {card} with {strange[0][:40]} is not followed; write a node table (CSV) instead"
+            f"{where}: {card} with {strange[0][:40]} is not supported; write a node table (CSV) instead"
         )
     if card == "*NSET" and not options.get("NSET"):
         raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
@@ -212,7 +212,7 @@ def _listed(line: str, options: dict[str, str], deck: Deck, where: str) -> Itera
         raise StudyError(f"{where}: {line[:80]!r} is not a range of first, last and step")
     first, last, step = (*(int(part) for part in parts), 1)[:3]
     if first > last or not step:
-        raise StudyError(f"{where}: {line[:80]!r} runs from {first} to {last} by {step}; no node is in it")
+        raise StudyError(f"{where}: {line[:80]!r} contains no node: it runs from {first} to {last} by {step}")
     return [range(first, last + 1, step)]
 
 
@@ -226,9 +226,11 @@ def _held(line: str, deck: Deck, where: str) -> Iterator[tuple[int, int]]:
     if [
         value for value in numbers[2:] if value and not re.fullmatch(r"[+-]?0*\.?0*([EeDd][+-]?\d+)?", value)
     ]:
-        raise StudyError(f"{where}: {line[:80]!r} holds a node elsewhere than at rest; leave the value out")
+        raise StudyError(
+            f"{where}: {line[:80]!r} prescribes a displacement other than zero; leave the value out"
+        )
     first, last = int(ends[0]), int(ends[-1])
     if first > last:
-        raise StudyError(f"{where}: {line[:80]!r} holds directions from {first} to {last}; none is in it")
+        raise StudyError(f"{where}: {line[:80]!r} has its last direction ({last}) before its first ({first})")
     for node in deck.members(name, where):
         yield from ((node, direction) for direction in range(first, min(last, 6) + 1))

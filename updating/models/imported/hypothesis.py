@@ -100,7 +100,7 @@ def change_of(own: Sparse, other: Sparse, what: str) -> Sparse:
     change = _change(own, symmetric(other, what))
     if not change.nnz:
         raise StudyError(
-            f"{what} is the model's own: the hypothesis changes nothing; export it with the change made"
+            f"{what} is identical to the model's own, so the hypothesis changes nothing; export it with the change"
         )
     return change
 

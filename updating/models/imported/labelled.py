@@ -171,15 +171,15 @@ def _matrix_of(line: str, open_to: Collection[str], where: str) -> str:
         name = line[8:16].strip()
         if not name or line[16:24].strip() != "0":
             raise StudyError(
-                f"{where}: no header of a matrix, which is DMIG, a name and 0 in fields of 8 columns, nor a column, "
-                "which is DMIG*; punch the file again"
+                f"{where}: neither the header of a matrix (DMIG, name, 0 in fields of 8 columns) nor a column (DMIG*); "
+                "punch the file again"
             )
         return name
     name = line[8:24].strip()
     if name not in open_to:
         raise StudyError(
-            f"{where}: a column of {name or 'no matrix'} without a header, or apart from the columns before it; punch "
-            "the file anew"
+            f"{where}: a column of {name or 'no matrix'} has no header, or is apart from the columns before it; punch "
+            "the file again"
         )
     return name
 

@@ -56,7 +56,7 @@ def _kind(head: bytes, path: Path) -> tuple[str, str]:
     """Return format and symmetry that the first line states."""
     found = _HEAD.fullmatch(head)
     if found is None:
-        raise StudyError(f"{path}: not a MatrixMarket file: its first line is no %%MatrixMarket matrix ...")
+        raise StudyError(f"{path}: not a MatrixMarket file: its first line is not %%MatrixMarket matrix ...")
     form, field, symmetry = (word.decode("latin-1").lower() for word in found.groups())
     if field not in ("real", "integer", "double", "unsigned-integer"):
         raise StudyError(f"{path}: holds {field} values; stiffness and mass are real")

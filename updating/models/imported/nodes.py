@@ -131,7 +131,7 @@ def read_table(path: Path, order: int) -> NodeTable:
         raise StudyError(f"{path}, line {line}: node or direction is missing")
     if not (rows >= 0).any():
         raise StudyError(
-            f"{path}: no line has a row of the matrices; there must be one for each that is at a place"
+            f"{path}: no line gives a row of the matrices; give one line for each row that belongs to a node"
         )
     for column in ("node", "direction", "row"):
         stated = values[column].to_numpy()

@@ -165,8 +165,8 @@ def _of_one_kind(paths: Sequence[Path]) -> bool:
     if len(set(kinds)) > 1:
         named, by_rows = paths[kinds.index(True)], paths[kinds.index(False)]
         raise StudyError(
-            f"{named}: its entries name nodes and directions, and those of {by_rows.name} have rows alone, in an order "
-            "that neither file states; export all matrices of a model in one format"
+            f"{named}: its entries are given by node and direction, those of {by_rows.name} by row alone; neither file "
+            "states the order of the rows. Export all matrices of a model in one format"
         )
     return kinds[0]
 
@@ -176,7 +176,7 @@ def _check_named(path: Path, kind: str, name: str | None) -> None:
     if name is not None and path.suffix.lower() not in {*OUTPUTS, *PUNCHED}:
         endings = ", ".join(sorted({*OUTPUTS, *PUNCHED}))
         raise StudyError(
-            f"{path}: {kind}_name = {name!r}, and its matrix has no name; the key is for {endings}: leave it out"
+            f"{path}: {kind}_name = {name!r} is for {endings}; a matrix in this format has no name: leave it out"
         )
 
 

@@ -31,7 +31,7 @@ def units_of(name: str) -> tuple[float, float]:
         If it is unknown.
     """
     if name not in UNITS:
-        raise StudyError(f"no units {name!r}; known: {', '.join(UNITS)}")
+        raise StudyError(f"unknown units {name!r}; known: {', '.join(UNITS)}")
     return UNITS[name]
 
 

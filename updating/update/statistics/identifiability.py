@@ -59,7 +59,7 @@ class Coupling:
         """Return one sentence."""
         names = ", ".join(self.parameters)
         if len(self.parameters) == 1:
-            return f"{names}: the data are weaker than the prior knowledge"
+            return f"{names}: the data determine it less precisely than the prior knowledge"
         if not self.determined:
             return f"{names}: the data determine no combination of them"
         known = "; ".join(

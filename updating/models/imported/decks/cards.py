@@ -118,7 +118,7 @@ def read_cards(path: Path) -> Cards:
         found.append(card(head, *lines, where=where))
     for one in found:
         if one.name in UNFOLLOWED:
-            raise StudyError(f"{one.where}: {one.name} is not followed; {UNFOLLOWED[one.name]}")
+            raise StudyError(f"{one.where}: {one.name} is not supported; {UNFOLLOWED[one.name]}")
     return tuple(_model(found))
 
 

@@ -192,7 +192,7 @@ def _elements(one: Card) -> dict[int, tuple[str, tuple[int, ...]]]:
     count = NODES.get(kind) or (int(counted[1]) if counted else 0)
     if not count:
         raise StudyError(
-            f"{one.where}: elements of type {kind or '(none named)'} are not followed; export the matrices and use "
+            f"{one.where}: elements of type {kind or '(none named)'} are not supported; export the matrices and use "
             'type = "matrices"'
         )
     words = [word for row in one.rows() for word in row if word]

@@ -127,8 +127,8 @@ class DeckModel:
         found = stored(text_of(cards), f"{self.path} ({what})" if what else str(self.path))
         if not found.same_rows(self.base):
             raise StudyError(
-                f"{self.path}: with {what}, ccx eliminates other degrees of freedom; shells of one thickness join "
-                "otherwise than shells of two: let the deck's own thicknesses differ by a thousandth"
+                f"{self.path}: with {what}, ccx eliminates other degrees of freedom, because it joins shells of equal "
+                "and of different thickness in different ways; make the deck's own thicknesses differ by a thousandth"
             )
         return found
 
@@ -186,8 +186,8 @@ def deck_matrices(path: Path, like: DeckModel) -> tuple[Sparse, Sparse]:
     other = read_deck_model(path, units=like.units)
     if not other.base.same_rows(like.base):
         raise StudyError(
-            f"{path}: its matrices have {len(other.base.node)} rows, those of {like.path} {len(like.base.node)}, or as "
-            "many of other nodes; give a deck on the same mesh and supports"
+            f"{path}: its matrices ({len(other.base.node)} rows) and those of {like.path} ({len(like.base.node)} rows) "
+            "do not belong to the same nodes; give a deck on the same mesh and supports"
         )
     return other.whole
 

@@ -214,7 +214,7 @@ def _moved(mesh: Mesh, deck: Deck, name: str, head: str, axis: str, length: floa
     rest = np.array([at for node, at in deck.nodes.items() if node not in moved]).reshape(-1, 3)
     if not len(rest) or not moved:
         raise StudyError(
-            f"{name}: the set holds {'every' if moved else 'no'} node; nothing changes its shape"
+            f"{name}: the set contains {'every' if moved else 'no'} node, so moving it changes no shape"
         )
     near, _ = KDTree(rest).query(
         np.array([deck.nodes[node] for node, share in moved.items() if share == 1.0])

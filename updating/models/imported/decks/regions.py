@@ -62,8 +62,8 @@ class Division:
         mixed = [self.regions[i] for i in own if len(self.regions[i].materials) > 1]
         if mixed:
             raise StudyError(
-                f"{material}: region {mixed[0].name!r} is made of {' and '.join(mixed[0].materials)}; for one alone, "
-                "make regions of one each"
+                f"{material}: region {mixed[0].name!r} consists of {' and '.join(mixed[0].materials)}; to change "
+                "one of them alone, give each material a region of its own"
             )
         return own
 
@@ -215,7 +215,7 @@ def scaled(cards: Cards, stiffness: float, mass: float) -> list[Card]:
             kind = one.options.get("TYPE", "ISO")
             if kind not in MODULI:
                 raise StudyError(
-                    f"{one.where}: *ELASTIC, TYPE={kind} is not followed; known: {', '.join(MODULI)}"
+                    f"{one.where}: *ELASTIC, TYPE={kind} is not supported; known: {', '.join(MODULI)}"
                 )
             found.append(_multiplied(one, *MODULI[kind], stiffness))
         elif one.name not in OF_MATERIAL:
