@@ -165,9 +165,9 @@ def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple
         )
         if trend is not None and abs(trend.rate) > _TREND * trend.rate_sigma:
             notes.append(
-                f"the frequencies drift: from the first of {trend.setups} points to the last, in the order of the "
-                f"file, by {100 * trend.rate:+.2g} % (sigma {percent(100 * trend.rate_sigma)}); the modes are "
-                "those in the middle of the test"
+                f"the frequencies drift by {100 * trend.rate:+.2g} % (sigma {percent(100 * trend.rate_sigma)}) from "
+                f"the first to the last of {trend.setups} points, in the order of the file; the modes are those in the "
+                "middle of the test"
             )
     if fitted.frfs.line_shape is not None:
         notes.append(fitted.frfs.line_shape.statement(stated=fitted.frfs.window is not None))

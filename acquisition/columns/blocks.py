@@ -222,7 +222,7 @@ def plain_blocks(
                 style, body, first = found, [line], number
     if not blocks:
         raise InputError(
-            f"{path}: no line of {least} or more numbers in it; check skip, separator and decimal in the layout"
+            f"{path}: no line contains {least} or more numbers; check skip, separator and decimal in the layout"
         )
     _check_below(above, len(lines), blocks[-1].style, path)
     return blocks

@@ -222,7 +222,7 @@ def _node_pattern(names: Sequence[str]) -> Guess | None:
     chosen = marked or free
     if not chosen:
         return None
-    why = "it stands behind a word for points" if marked else "it differs from file to file"
+    why = "it follows a word for points" if marked else "it differs from file to file"
     parts = [
         "{node}" if i == chosen[0] else "*" if i in varying else _literal(word)
         for i, word in enumerate(words[0])

@@ -190,7 +190,9 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         If a key is unknown or has a value of the wrong kind.
     """
     if "rate_variable" in table:
-        raise InputError(f"{source}: rate_variable is called rate; write rate = {table['rate_variable']!r}")
+        raise InputError(
+            f"{source}: the key is rate, not rate_variable; write rate = {table['rate_variable']!r}"
+        )
     top = {
         k: v if k == "rate" and _is_name(v) else _in_si(v, UNITS[k], f"{source}: {k}") if k in UNITS else v
         for k, v in table.items()
@@ -285,8 +287,8 @@ def _check_rule(rule: FileRule, columns: tuple[Column, ...], where: str) -> None
     known = [c.index if c.name is None else c.name for c in columns]
     if rule.column != "" and rule.column not in known:
         raise InputError(
-            f"{where}: no [[column]] is {rule.column!r}; they are {', '.join(map(repr, known))}, or leave it out for "
-            "the force"
+            f"{where}: there is no [[column]] {rule.column!r}; name one of {', '.join(map(repr, known))}, or leave "
+            "column out for the force"
         )
     check_rule(rule, where)
     try:
@@ -316,9 +318,7 @@ def _built(kind: type, entry: Mapping[str, Any], where: str) -> Any:
             raise InputError(f"{where}: unknown key {key!r}{_meant(key, names)}; keys are {', '.join(names)}")
         allowed = _KINDS.get(known[key])
         if allowed and (not isinstance(value, allowed) or isinstance(value, bool)):
-            raise InputError(
-                f"{where}: {key} = {value!r} is not of the kind {known[key].split(' | None')[0]}"
-            )
+            raise InputError(f"{where}: {key} = {value!r} is not of type {known[key].split(' | None')[0]}")
     try:
         return kind(**entry)
     except TypeError as error:

@@ -88,7 +88,8 @@ def check_axis(layout: MatLayout, rate: float | str | None, source: str) -> None
     """
     if bool(layout.frequency) == (rate is not None) or (rate is not None and not layout.frfs):
         raise InputError(
-            f"{source}: [mat] needs the frequency of lines or of modes; of FRFs without it, rate and samples above it"
+            f"{source}: [mat] needs frequency, of the lines or of the modes; for FRFs without it, give rate and "
+            "samples above [mat]"
         )
 
 
@@ -100,7 +101,7 @@ def _value(value: Any, default: Any, where: str) -> Any:
         return tuple(value)
     kind = bool if isinstance(default, bool) else str
     if not isinstance(value, kind):
-        raise InputError(f"{where} = {value!r} is no {'text' if kind is str else 'true or false'}")
+        raise InputError(f"{where} = {value!r} is not {'a text' if kind is str else 'true or false'}")
     return value
 
 

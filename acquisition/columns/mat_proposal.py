@@ -78,8 +78,8 @@ def of_mat(found: FrfArray) -> list[str]:
         lines = []
         above = [
             f"rate = {text_of(found.rate)}  # {found.hertz:.9g} Hz: by its name",
-            f"samples = {2 * count - 2}  # were transformed, or {2 * count - 1}, or {count} where lines go on to the "
-            "rate: correct it",
+            f"samples = {2 * count - 2}  # number transformed; or {2 * count - 1}, or {count} if the lines go on to "
+            "the rate: correct it",
             "",
         ]
     return [

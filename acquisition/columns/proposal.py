@@ -259,7 +259,7 @@ def _key(source: Source, channel: Channel) -> str:
 def _unit(source: Source, channel: Channel, quantity: str) -> list[str]:
     """Return the unit, and the scale where the numbers are parts of a full scale."""
     scale = [
-        "# scale = ...  # value at full scale, by sensitivity and gain; needed"
+        "# scale = ...  # needed: the value at full scale, from sensitivity and gain"
     ] * source.record.needs_scale
     known = channel.unit and quantity_of_unit(channel.unit) == quantity
     if known and channel.stated:
@@ -269,7 +269,7 @@ def _unit(source: Source, channel: Channel, quantity: str) -> list[str]:
     si = {"force": "N", "acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}[quantity]
     if channel.unit:
         return [
-            f"unit = {text_of(channel.unit)}  # as the file states it, and none of {quantity}: write {text_of(si)} and "
+            f"unit = {text_of(channel.unit)}  # from the file, but not a unit of {quantity}: write {text_of(si)} and "
             f"scale = ... ({si} per {channel.unit}, one over the sensitivity)"
         ]
     return [f'unit = "{si}"  # not in the file: correct it, with scale = ... for a sensitivity', *scale]
@@ -284,7 +284,7 @@ def _of_frfs(source: Source, lines: Channel, paths: Sequence[Path]) -> list[str]
         f"frequency_column = {_key(source, lines)}  # it rises in even steps and is called {lines.name!r}"
     ]
     for k, (channel, part) in enumerate(zip(data, parts, strict=True)):
-        why = "by its name" if known else "real and imaginary part by turns: correct it"
+        why = "by its name" if known else "assumed: real and imaginary parts alternate; correct it"
         text += [
             "",
             "[[column]]",

@@ -113,8 +113,8 @@ def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:
         return recorded(path, keys, rate=layout.rate_array)
     if layout.rate_array is not None:
         raise InputError(
-            f"{path}: rate = {layout.rate!r} in {layout.source} names an array, and text has none; give the rate in "
-            "Hz, or time_column"
+            f"{path}: rate = {layout.rate!r} in {layout.source} names an array, but text has no arrays; give the rate "
+            "in Hz, or time_column"
         )
     lines = read_text(path)
     if is_lvm(lines):
@@ -149,7 +149,7 @@ def scaled(block: Channels, columns: Sequence[Column], more: Sequence[int] = ())
         unit = c.unit or block.units.get(place, "")
         if block.needs_scale and c.scale is None:
             raise InputError(
-                f"{block.path}: {c.label} holds parts of the full scale; give scale = ..., the value at full scale in "
+                f"{block.path}: {c.label} holds fractions of full scale; give scale = ..., the value at full scale in "
                 "the unit of the column"
             )
         scale = 1.0 if c.scale is None else c.scale

@@ -60,7 +60,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
             axes[0], axes[-1], rtol=0, atol=SAME_AXIS * axes[0].max()
         )
         if not same:
-            raise InputError(f"{block.where}: another frequency axis than {files[0]}")
+            raise InputError(f"{block.where}: its frequency axis differs from that of {files[0]}")
     return FrfSet(
         frequency=axes[0],
         values=np.stack(rows),
@@ -130,8 +130,8 @@ def _note(
     for key in ((pair[0].dof, pair[0].reference) for pair in pairs):
         if key in found:
             raise InputError(
-                f"{where}: FRF {key[0]}/{key[1]} is in {found[key]} already; say in {layout.source} by a [[file]] rule "
-                "for each file which node was hit there (or seen: column = ...)"
+                f"{where}: FRF {key[0]}/{key[1]} is in {found[key]} already; give each file a [[file]] rule in "
+                f"{layout.source} that states the node hit (or measured: column = ...)"
             )
         found[key] = where
 

@@ -88,7 +88,7 @@ def check_rule(rule: FileRule, where: str) -> None:
         count = rule.match.count(word)
         if count > 1 or (count and given):
             raise InputError(
-                f"{where}: {word} stands once in match, and not beside a key of that name; correct the rule"
+                f"{where}: {word} may occur once in match, and not together with the key of that name; correct the rule"
             )
     placed = rule.named or rule.node is not None or rule.direction or DIRECTION in rule.match
     if not (placed or rule.unit or rule.scale is not None):
@@ -121,6 +121,6 @@ def check_rules(rules: Sequence[FileRule], files: Sequence[Path], source: str) -
             else f"{named[0]!r} takes the nodes from the names"
         )
         raise InputError(
-            f"{lost[0]}: no [[file]] rule of {source} matches it, and {what}; correct one of them, because "
-            "otherwise the hit point is a guess"
+            f"{lost[0]}: no [[file]] rule of {source} matches it, and {what}, so the hit point would be a guess; "
+            "correct the rule or the name"
         )

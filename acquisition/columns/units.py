@@ -57,7 +57,7 @@ def factor_to_si(unit: str, quantity: str, where: str) -> float:
     table = _TABLES[quantity]
     if text not in table:
         raise InputError(
-            f"{where}: {unit!r} is no unit of {quantity} known here; use one of {', '.join(table)}"
-            + (", and scale = ... for what one volt is in it" if text.endswith("v") else "")
+            f"{where}: {unit!r} is not a known unit of {quantity}; use one of {', '.join(table)}"
+            + (", and scale = ... for the value of one volt in it" if text.endswith("v") else "")
         )
     return table[text]

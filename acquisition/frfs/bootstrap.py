@@ -56,7 +56,7 @@ def bootstrap_frfs(
     """
     if n < 1 or estimator not in ESTIMATORS:
         raise InputError(
-            f"bootstrap: {n} sets by {estimator!r}; ask for 1 or more by {', '.join(ESTIMATORS)}"
+            f"bootstrap: {n} sets by estimator {estimator!r}; ask for at least 1, by {', '.join(ESTIMATORS)}"
         )
     plain = estimate_frfs(
         test, estimator=estimator, verdicts=verdicts, windows=windows, band=band, keep_scatter=False
@@ -65,7 +65,7 @@ def bootstrap_frfs(
     single = [str(hits.reference) for hits, keep in kept if keep.sum() < 2]
     if single:
         raise EstimationError(
-            f"{test.source}: a single usable hit at {', '.join(single)}; nothing can be drawn there: hit again "
+            f"{test.source}: only one usable hit at {', '.join(single)}, which cannot be resampled: hit again "
             "or leave these points out"
         )
     first = int(np.rint(plain.frequency[0] * test.samples / test.rate))
@@ -96,7 +96,7 @@ def _draws(
             averages=averages,
             decay=plain.decay,
             geometry=plain.geometry,
-            source=f"{plain.source}, hits drawn anew",
+            source=f"{plain.source}, hits resampled",
         )
 
 

@@ -88,11 +88,11 @@ def _compared(one: ComplexArray, two: ComplexArray, noise: FloatArray) -> tuple[
 def _message(correlation: float, level: float, phase: float, expected: float) -> str:
     if correlation < expected:
         return (
-            f"not reciprocal: correlation {correlation:.2f}; a place or direction is mistaken, a hit landed "
-            "elsewhere, or sensors were moved between"
+            f"not reciprocal: correlation {correlation:.2f}; a place or direction is wrong, a hit landed "
+            "elsewhere, or a sensor was moved in between"
         )
     if abs(phase) > 180 - TURNED:
-        return "opposite sign: a direction or polarity is mistaken"
+        return "opposite sign: a direction or polarity is wrong"
     if abs(phase) > TURNED:
         return f"{phase:+.0f} degrees apart: a channel lags"
     if abs(np.log(level)) > np.log1p(LEVEL):

@@ -215,7 +215,7 @@ def _masses(mass: float | Mapping[Dof, float], sensors: Sequence[Dof]) -> dict[D
     wrong = {dof: value for dof, value in masses.items() if not (np.isfinite(value) and value >= 0)}
     if wrong:
         dof, value = next(iter(wrong.items()))
-        raise InputError(f"the mass of the sensor at {dof} is {value} kg; give what it weighs, 0 or more")
+        raise InputError(f"the mass of the sensor at {dof} is {value} kg; give a mass of 0 or more")
     return masses
 
 

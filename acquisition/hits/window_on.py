@@ -56,8 +56,8 @@ def windowed_records(test: HammerTest, decay: float) -> tuple[On, tuple[str, ...
     if gain - 1 < NEGLIGIBLE:
         return "both", ()
     text = (
-        f"{test.source}: the noise of the force does not show whether {window} was on the force too; it is taken to "
-        f"have been on both. If it was on the responses alone, FRFs are {change}: give --window-on responses, or both"
+        f"{test.source}: the noise of the force does not show whether {window} was on the force, too; it is assumed to "
+        f"be on both. If it was on the responses alone, FRFs are {change}. State --window-on responses or both"
     )
     return "both", (Consequential(text),)
 

@@ -48,7 +48,7 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
         return read_mat_frfs(path, placed, plan)
     if plan.files:
         raise InputError(
-            f"{plan.source}: [[file]] places the FRFs of a file, and [mat] names modes, whose points are dofs; leave "
+            f"{plan.source}: [[file]] gives the points of FRFs, but [mat] names modes, whose points are in dofs; leave "
             "[[file]] out"
         )
     return read_mat_modes(path, plan.mat, geometry=plan.nodes)
@@ -72,7 +72,7 @@ def _placed(plan: Layout, path: Path) -> MatLayout:
             if rule is None
             else f"a [[file]] rule of {plan.source} gives no node; unit and scale of FRFs are stated in [mat]"
             if rule.node is None
-            else f"a [[file]] rule of {plan.source} places one reference, and [mat] has {len(plan.mat.references)}"
+            else f"a [[file]] rule of {plan.source} gives one reference, but [mat] has {len(plan.mat.references)}"
         )
         raise InputError(f"{path}: {why}; correct the rules, or leave them out")
     usual = replace(Dof.of(plan.mat.references[0]), node=rule.node)
@@ -139,9 +139,9 @@ def _one_sided(
     if half is None or count not in (half, samples):
         stated = "is not stated" if half is None else f"= {samples} has {half} lines up to half the rate"
         raise InputError(
-            f"{path}: {layout.frfs!r} has {count} lines and no frequency, and samples {stated}; give samples = ... in "
-            f"the layout, the number that were transformed: {2 * count - 2} or {2 * count - 1} if the lines end at "
-            f"half the rate, {count} if they go on to the rate; or name a frequency"
+            f"{path}: {layout.frfs!r} has {count} lines and no frequency, and samples {stated}; name a frequency, or "
+            f"give the number of transformed samples in the layout: {2 * count - 2} or {2 * count - 1} if the lines "
+            f"end at half the rate, {count} if they go on to the rate"
         )
     assert samples is not None
     return np.take(values, np.arange(half), axis=axis), np.arange(half) * rate / samples
@@ -159,11 +159,11 @@ def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -
     if shapes is not None and (shapes.shape != (len(dofs), len(frequency)) or not np.isfinite(shapes).all()):
         raise InputError(
             f"{path}: {layout.shapes!r} has shape {shapes.shape} for {len(dofs)} dofs and {len(frequency)} modes, or "
-            "gaps; give one row for each of dofs and one column for each mode"
+            "has gaps; give one row per entry of dofs and one column per mode"
         )
     if damping is not None and len(damping) != len(frequency):
         raise InputError(
-            f"{path}: {len(frequency)} frequencies but {len(damping)} of {layout.damping!r}; name others"
+            f"{path}: {len(frequency)} frequencies but {len(damping)} values of {layout.damping!r}; correct the names"
         )
     sign = np.array([dof.sign for dof in dofs], dtype=np.float64)
     modal = ModalData(

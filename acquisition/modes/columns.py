@@ -65,11 +65,11 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
             continue
         begins = name.strip().lower().startswith(("damping", "zeta"))
         close = difflib.get_close_matches(plain(name)[:40], known, n=1, cutoff=0.0 if begins else _RESEMBLES)
-        meant = f", is {close[0]!r} meant" if close else ""
+        meant = f"; is {close[0]!r} meant?" if close else "."
         raise InputError(
-            f"{path}: column {name[:40]!r} is unknown{meant}; known are {KNOWN}, degrees of freedom as "
-            f"3+Z, 3+Z imag, 3+Z sigma, and, not read, {', '.join(PASSED[:-1])}: correct the heading; to "
-            f"skip the column, write {ASIDE + name[:40]!r} or delete it"
+            f"{path}: column {name[:40]!r} is unknown{meant} Correct the heading; to skip the column, write "
+            f"{ASIDE + name[:40]!r} or delete it. Known: {KNOWN}; degrees of freedom, as 3+Z, 3+Z imag, "
+            f"3+Z sigma; ignored: {', '.join(PASSED[:-1])}"
         )
 
 
@@ -157,6 +157,6 @@ def components(table: pd.DataFrame, dofs: list[str], part: str, path: Path) -> F
     if names and sorted(names) != sorted(wanted):
         odd = sorted(set(names).symmetric_difference(wanted))[0]
         raise InputError(
-            f"{path}: column {odd!r} has no counterpart; every shape needs a column of this kind, or none"
+            f"{path}: column {odd!r} is missing or belongs to no shape; give such a column for every shape or for none"
         )
     return np.array([numbers(table[name], name, path) for name in wanted]) if names else None

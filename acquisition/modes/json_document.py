@@ -49,7 +49,7 @@ def _modal(document: Mapping[str, Any], path: Path) -> ModalData:
     check_keys(document, _KEYS, str(path))
     check_same_keys(modes, f"{path}: modes")
     if not modes:
-        raise InputError(f"{path}: holds no mode; identify with a band that has some")
+        raise InputError(f"{path}: contains no modes; identify with a band that contains some")
     check_keys(modes[0], _OF_MODE, f"{path}: mode 1")
     shapes = [_shape(mode, f"{path}: mode {n}") for n, mode in enumerate(modes, start=1)]
     dofs = tuple(shapes[0])

@@ -87,7 +87,7 @@ def _of_own(reader: Reader, path: Path) -> ModalData:
     found = read_by(reader, path)
     if not isinstance(found, ModalData):
         raise InputError(
-            f"{path}: its reader returned {type(found).__name__}, but modes are asked for; use files"
+            f"{path}: its reader returned {type(found).__name__}, but modes are needed; name it under files"
         )
     return found
 
@@ -198,6 +198,6 @@ def _with_points(table: pd.DataFrame, path: Path) -> pd.DataFrame:
     points = [cell for cell in cells if "." in cell and Style(None, ".").is_number(cell)]
     if commas and points:
         raise InputError(
-            f"{path}: {points[0]!r} has a point and {commas[0]!r} a comma; write all numbers with one of them"
+            f"{path}: {points[0]!r} has a decimal point and {commas[0]!r} a decimal comma; write all numbers alike"
         )
     return table.apply(lambda cells: cells.str.replace(",", ".", regex=False)) if commas else table

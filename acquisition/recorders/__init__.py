@@ -54,13 +54,13 @@ def recorded(path: Path, names: Sequence[str | int] = (), *, rate: str | None = 
         words = [name for name in names if isinstance(name, str)]
         if not words or len(words) < len(names):
             raise InputError(
-                f"{path}: its arrays have names and no numbers; give name = ... in each [[column]]"
+                f"{path}: its arrays are named, not numbered; give name = ... in each [[column]]"
             )
         return records_of(path, _module(ARRAYS[ending]).named_arrays, words, rate)
     if rate is not None:
         raise InputError(
-            f"{path}: rate = {rate!r} names an array, as files of named arrays have ({', '.join(ARRAYS)}); this file "
-            "states its rate, or give rate = ... [Hz]"
+            f"{path}: rate = {rate!r} names an array, but only {', '.join(ARRAYS)} have named arrays; leave rate out "
+            "if the file states it, or give it in Hz"
         )
     found: list[Recorded] = _module(RECORDERS[ending]).records(path)
     return found

@@ -132,7 +132,9 @@ def _rows(values: AnyArray, name: str, path: Path) -> AnyArray:
     if channel is None:
         return np.atleast_2d(flat)
     if flat.ndim != 2 or int(channel) >= len(flat):
-        raise InputError(f"{path}: {name!r} is not there, the array has shape {values.shape}; counted from 0")
+        raise InputError(
+            f"{path}: there is no {name!r}: the array has shape {values.shape}, and indices count from 0"
+        )
     return np.atleast_2d(flat[int(channel)])
 
 
@@ -145,7 +147,7 @@ def _part(values: AnyArray, part: str | None, name: str, path: Path) -> AnyArray
             f"{path}: {name!r} holds complex numbers; name its parts, '{name} real' and '{name} imag'"
         )
     raise InputError(
-        f"{path}: {name!r} is not there, the array holds real numbers; leave {part!r} out of the name"
+        f"{path}: there is no {name!r}: the array holds real numbers; leave {part!r} out of the name"
     )
 
 

@@ -86,12 +86,12 @@ class Channels(ABC):
         if isinstance(column, int):
             if not 0 <= column < self.width:
                 raise InputError(
-                    f"{self.where}: {label} is not there; there are {self.width} columns, counted from 0"
+                    f"{self.where}: there is no {label}; there are {self.width} columns, counted from 0"
                 )
             return column
         places = [i for i, name in enumerate(self.names) if name == column]
         if len(places) != 1:
-            found = "twice there" if places else "not there"
+            found = "given twice" if places else "missing"
             known = [name for name in self.names if name]
             heads = ", ".join(map(repr, known[:LISTED])) + (", ..." if len(known) > LISTED else "")
             raise InputError(f"{self.where_names}: {label} is {found}; the headings are {heads or 'none'}")

@@ -107,8 +107,8 @@ def _check_size(found: Any, name: str, path: Path) -> None:
     size = found.size * found.dtype.itemsize if found.size else 0
     if size > _LARGEST_RATIO * path.stat().st_size + _FREE:
         raise InputError(
-            f"{path}: {name!r} takes {size} bytes, over {_LARGEST_RATIO} times the file's size; measured numbers do "
-            "not: the file is damaged, or holds none"
+            f"{path}: {name!r} takes {size} bytes, over {_LARGEST_RATIO} times the file's size, which measured data "
+            "never do; the file is damaged, or contains no measurement"
         )
 
 

@@ -51,7 +51,7 @@ def read_uff(
     """
     paths = [Path(path)] if isinstance(path, str | Path) else [Path(p) for p in path]
     if not paths:
-        raise InputError("no file to read; name one at least")
+        raise InputError("no file to read; name at least one")
     report = _Report(progress, sum(_size(p) for p in paths))
     finds = Finds(several=len(paths) > 1)
     with ExitStack() as stack:
@@ -150,7 +150,7 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     )
     if times and not has_force:
         count = f"{len(times)} time record" + ("s" if len(times) > 1 else "")
-        lost = [f"{source}: {count} and no force among them: not used"]
+        lost = [f"{source}: {count} without a force: not used"]
     frfs, odd = assemble_frfs(records, nodes.geometry, source, report.read)
     solved, doubts = solve_modes(finds.modes, finds.sigmas)
     modal = join_modes(solved, nodes.geometry) if solved else None

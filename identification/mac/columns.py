@@ -45,8 +45,8 @@ def both(a: AnyArray, b: AnyArray) -> tuple[ComplexArray, ComplexArray]:
     first, second = columns(a), columns(b)
     if first.shape[0] != second.shape[0]:
         raise InputError(
-            f"shapes of {first.shape} and {second.shape}: both need one row for each of the same "
-            "degrees of freedom"
+            f"arrays of shapes {first.shape} and {second.shape}: both must have one row for each degree of freedom "
+            "in common"
         )
     return first, second
 

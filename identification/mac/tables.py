@@ -181,7 +181,9 @@ def frac_table(first: FrfSet, second: FrfSet) -> pd.DataFrame:
     names = list(zip(first.responses, first.references, strict=True))
     rows = [(i, place[p]) for i, p in enumerate(names) if p in place]
     if not rows:
-        raise InputError("the two sets have no FRF in common; compare pairs of degrees of freedom both hold")
+        raise InputError(
+            "the two sets have no FRF in common; compare pairs of degrees of freedom that are in both"
+        )
     values = frac(first.values[[i for i, _ in rows]], other.values[[j for _, j in rows]])
     text = {k: [str(names[i][n]) for i, _ in rows] for n, k in enumerate(("response", "reference"))}
     return pd.DataFrame({**text, "FRAC": values})

@@ -163,5 +163,5 @@ def not_at_rest(fit: Fit, poles: ComplexArray) -> str:
         "the refinement of the poles did not converge: the next step would change frequencies by up to "
         f"{abs(move[own[worst]]):.2g} Hz (at {hertz(place)}), damping may change too, and standard deviations may be "
         "too small. The usual reason is more poles than the data support: narrow the band, lower the order, or drop "
-        "poles that are not modes, and use the numbers that then stay within their standard deviations"
+        "poles that are not modes. Trust only numbers that then stay within their standard deviations"
     )

@@ -67,7 +67,7 @@ def test_a_table_with_other_separators_and_decimal_commas_is_read(
 def test_a_table_with_points_and_commas_in_its_numbers_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "modes.csv"
     path.write_text("frequency;sigma\n1,234;0.1\n", encoding="utf-8")
-    with pytest.raises(InputError, match=r"'0\.1' has a point and '1,234' a comma"):
+    with pytest.raises(InputError, match=r"'0\.1' has a decimal point and '1,234' a decimal comma"):
         read_modes(path)
 
 

@@ -68,7 +68,7 @@ def test_a_drift_is_found_with_its_sign_and_the_modes_are_those_of_the_middle(
     assert trend.rate_sigma < 0.02 * abs(rate)
     np.testing.assert_allclose(trend.value, rate, rtol=0.05)
     np.testing.assert_allclose(model.modal.frequency, HERTZ, rtol=0.3 * abs(rate))
-    assert any(f"drift: from the first of {POINTS} points" in w for w in model.warnings)
+    assert any("frequencies drift" in w and f"last of {POINTS} points" in w for w in model.warnings)
 
 
 @pytest.mark.long

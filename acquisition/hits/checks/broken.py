@@ -27,7 +27,7 @@ def why_broken(hits: Hits) -> list[Fault | None]:
     if length < SHORTEST:
         plural = "" if length == 1 else "s"
         return [
-            Fault("too short", f"a record of {length} sample{plural}; {SHORTEST} are the least")
+            Fault("too short", f"a record of {length} sample{plural}; at least {SHORTEST} are needed")
         ] * hits.count
     return [_why(force, motion) for force, motion in zip(hits.force, hits.motion, strict=True)]
 

@@ -122,7 +122,7 @@ class Array:
         if self.flags & COMPLEX:
             values.imag, after = self._part(after)
         if after < len(self.body.data):
-            raise self.body.broken(f"has more behind the numbers of {self.name!r}")
+            raise self.body.broken(f"has more data after the numbers of {self.name!r}")
         return values.reshape(self.shape, order="F")
 
     def parts(self) -> list[AnyArray]:

@@ -120,8 +120,8 @@ def _causal(made: list[Measurement], warnings: list[str]) -> list[Measurement]:
     if late <= 2 * early:
         return made
     warnings.append(
-        f"{frfs[0].place}: the cross-spectra are stored as force times conjugate response (they answer before "
-        "they are hit); their conjugates are used"
+        f"{frfs[0].place}: the cross-spectra are stored as force times conjugate response (their impulse "
+        "responses begin before the hit); their conjugates are used"
     )
     return [
         replace(m, values=Held(np.conj(m.values.values)))

@@ -193,7 +193,7 @@ def _whole(field: str) -> int:
     """Read a whole number; some programs write ``11.``, and blanks mean 0."""
     value = _real(field)
     if value != int(value):
-        raise InputError(f"{field.strip()!r} stands where a whole number is meant")
+        raise InputError(f"{field.strip()!r} stands where a whole number is expected")
     return int(value)
 
 
@@ -202,9 +202,9 @@ def _real(field: str) -> float:
     try:
         value = float(text or "0")
     except ValueError:
-        raise InputError(f"{field.strip()!r} stands in the header where a number is meant") from None
+        raise InputError(f"{field.strip()!r} stands in the header where a number is expected") from None
     if value - value != 0 or "_" in text or abs(value) > 1e30:
-        raise InputError(f"{field.strip()!r} stands in the header where a finite number is meant")
+        raise InputError(f"{field.strip()!r} stands in the header where a finite number is expected")
     return value
 
 

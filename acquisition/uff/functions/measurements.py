@@ -200,7 +200,7 @@ def _checked(located: Located, found: Measurement, minimum: float, digest: bool)
             total += len(bad)
     if total and not (spare_first and total == 1 and first_bad == 0):
         raise InputError(
-            f"{total} of its {located.header.points} values are not finite or too large to be meant, "
+            f"{total} of its {located.header.points} values are not finite or implausibly large, "
             f"the first at point {first_bad + 1}"
         )
     return sum_.digest() if digest else b""

@@ -48,7 +48,7 @@ def assemble_frfs(
         if other is not chosen:
             warnings.append(
                 f"{other[0].place}: {len(other)} FRFs differ from {len(chosen)} others in axis, form or "
-                "window; left out, put them in a file of their own"
+                "window and are left out; put them in a separate file"
             )
     pairs = [(m.response, m.reference) for m in chosen]
     if len(set(pairs)) < len(pairs):

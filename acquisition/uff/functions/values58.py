@@ -115,7 +115,7 @@ def _accounted(
         held = needed  # the delimiter has a line of its own
     if held > needed and announced != held:
         raise InputError(
-            f"it announces {announced} bytes, its points need {needed} and {held} stand there: "
+            f"it announces {announced} bytes, its points need {needed}, but {held} are there: "
             "bytes are missing or lost"
         )
     if held > needed:

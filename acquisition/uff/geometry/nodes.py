@@ -92,8 +92,8 @@ def merge_nodes(sets: Iterable[NodeSet], lines: Sequence[IntArray]) -> Nodes:
     own = np.array([skew.get(n, np.eye(3)) for n in places]).reshape(-1, 3, 3) if skew else None
     if skew:
         notes.append(
-            f"the directions at nodes {_named(list(skew))} are along axes of their own, turned by other than right "
-            "angles: codes +X, +Y, +Z mean these there, not the global ones"
+            f"nodes {_named(list(skew))} have local axes that are not parallel to the global ones: there the codes +X, "
+            "+Y, +Z mean local directions"
         )
     drawn, lost = _known_lines(lines, places)
     if lost:

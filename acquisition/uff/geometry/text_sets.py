@@ -39,7 +39,7 @@ def read_units(body: bytes) -> tuple[Units, str]:
         raise InputError("data set 164 cannot be read: units code or factors are not numbers") from None
     if len(factors) > _FACTORS:
         raise InputError(
-            f"data set 164 holds {len(factors)} factors, {_FACTORS} at most are meant: one is broken in two"
+            f"data set 164 holds {len(factors)} factors, at most {_FACTORS} are expected: one is broken in two"
         )
     check_digits("\n".join(words[:_NEEDED]).encode())
     length, force = (*factors, 0.0, 0.0)[:2]
@@ -107,7 +107,7 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
     ):
         raise InputError(f"data set {number}: node numbers or coordinates are not numbers")
     if np.any(labels % 1) or np.any(np.abs(labels) > 1e15) or np.any(np.abs(coordinates) > 1e15):
-        raise InputError(f"data set {number}: node numbers or coordinates that cannot be meant")
+        raise InputError(f"data set {number}: node numbers or coordinates are implausible")
     return labels.astype(np.int64), coordinates
 
 

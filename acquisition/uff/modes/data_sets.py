@@ -203,9 +203,9 @@ def _mode(
     normal = analysis == NORMAL
     leading = reals["frequency"] if normal else abs(complex(reals["re"], reals["im"]))
     if not all(np.isfinite(v) and abs(v) < 1e30 for v in reals.values()) or not leading > 1e-12:
-        raise InputError(f"its frequency or eigenvalue is {leading:g}: a mode needs one above zero")
+        raise InputError(f"its frequency or eigenvalue is {leading:g}: it must be above zero")
     if normal and not 0 <= reals["damping"] < 1:
-        raise InputError(f"its damping ratio is {reals['damping']:g}; between 0 and 1 is meant")
+        raise InputError(f"its damping ratio is {reals['damping']:g}; it must be between 0 and 1")
     return ModeSet(
         place=origin[0],
         file=origin[1],
@@ -238,7 +238,7 @@ def _shape(text: bytes, width: int, *, is_complex: bool) -> tuple[IntArray, Comp
     if not np.isfinite(table).all() or np.any(labels % 1) or np.any(np.abs(labels) > 1e15):
         raise InputError("its node numbers are not whole, or values are not finite")
     if np.abs(table).max() > 1e30 and np.abs(table[:, 1:]).max() > 1e30:
-        raise InputError("its shape holds values that cannot be meant")
+        raise InputError("its shape holds implausible values")
     values: AnyArray = np.ascontiguousarray(table[:, 1:])
     shape = np.zeros((len(table), 6), dtype=np.complex128)
     shape[:, :width] = values.view(np.complex128) if is_complex else values
@@ -251,7 +251,7 @@ def _shape(text: bytes, width: int, *, is_complex: bool) -> tuple[IntArray, Comp
 def _integers(line: bytes) -> list[int]:
     values = numbers_of(line)
     if not np.isfinite(values).all() or np.any(np.abs(values) > 1e15):
-        raise InputError("a whole number is meant in its header and something else stands there")
+        raise InputError("its header has something else where a whole number is expected")
     return [int(v) for v in values]
 
 

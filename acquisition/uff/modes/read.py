@@ -54,7 +54,7 @@ def solve_modes(
     if len({mode.scaled for mode in modes}) > 1:
         bare = next(mode for mode in modes if not mode.scaled)
         notes.append(
-            f"{bare.stated.place}: it states no modal mass and others do: no shape counts as mass-normalised"
+            f"{bare.stated.place}: it states no modal mass, unlike other modes: no shape is taken as mass-normalised"
         )
     return modes, notes
 

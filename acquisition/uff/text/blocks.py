@@ -123,7 +123,7 @@ def _unnumbered(data: mmap, opening: re.Match[bytes], line: int) -> tuple[Block,
         reason = "the file is cut off here" if end is None else "it is empty or one too many"
         block = Block(0, None, line, stop, stop, False, f"no data set follows its delimiter -1: {reason}")
     else:
-        block = _fault(data, line, first.start(), stop, "stands where the number of a data set is meant")
+        block = _fault(data, line, first.start(), stop, "stands where the number of a data set is expected")
         block = replace(block, start=data.find(b"\n", first.start(), stop) + 1 or stop)
     if end is None or _identity(data, end) is not None:
         return block, stop, end

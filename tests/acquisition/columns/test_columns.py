@@ -132,20 +132,20 @@ def test_bad_lines_are_named(tmp_path, records, before, after, message):
     [
         ("rate = 1000.0", "rat = 1000.0", r"unknown key 'rat' \(is 'rate' meant\?\)"),
         ("rate = 1000.0", "", r"no sampling rate; add rate = "),
-        ("rate = 1000.0", 'rate = "fast"', r"rate = 'fast' in .* names an array, and text has none"),
+        ("rate = 1000.0", 'rate = "fast"', r"rate = 'fast' in .* names an array, but text has no arrays"),
         ("rate = 1000.0", "rate = -1.0", r"give the sampling rate in Hz"),
         ("rate = 1000.0", "rate = 1000.0\nsamples = 50", r"line 2: 40 samples; the layout asks for 50"),
-        ('unit = "lbf"', 'unit = "g"', r"column 'hammer': 'g' is no unit of force"),
+        ('unit = "lbf"', 'unit = "g"', r"column 'hammer': 'g' is not a known unit of force"),
         ('unit = "lbf"', 'unti = "lbf"', r"\[\[column\]\] 1: unknown key 'unti' \(is 'unit' meant\?\)"),
         ('"force"', '"fource"', r"quantity = 'fource' \(is 'force' meant\?\)"),
         ('direction = "-z"', 'direction = "up"', r"\[\[column\]\] 1: direction 'up' is invalid"),
         (
             'name = "acc 1"',
             'name = "acc 9"',
-            r"line 1: column 'acc 9' is not there; the headings are 'hammer'",
+            r"line 1: column 'acc 9' is missing; the headings are 'hammer'",
         ),
         ('name = "acc 1"', "", r"give either index \(from 0\) or name"),
-        ('name = "acc 1"', "index = 7", r"no line of 8 or more numbers"),
+        ('name = "acc 1"', "index = 7", r"no line contains 8 or more numbers"),
         (
             'quantity = "acceleration"\nunit = "g"',
             'quantity = "velocity"',
@@ -178,7 +178,7 @@ def test_files_that_do_not_go_together_are_named(tmp_path, records):
     with pytest.raises(InputError, match="binary, not column text"):
         read_columns(tmp_path / "c.csv", layout)
     (tmp_path / "d.csv").write_text("nothing here\n")
-    with pytest.raises(InputError, match="no line of 3 or more numbers"):
+    with pytest.raises(InputError, match="no line contains 3 or more numbers"):
         read_columns(tmp_path / "d.csv", layout)
 
 

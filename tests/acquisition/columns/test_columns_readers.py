@@ -105,7 +105,7 @@ def test_a_registered_reader_may_return_frfs_or_hits_but_not_where_modes_are_ask
     register_reader("ABC", run(examples()[1])["read_abc"])
     (test,) = read_test(path)
     assert isinstance(test, HammerTest)
-    with pytest.raises(InputError, match="returned HammerTest, but modes are asked for"):
+    with pytest.raises(InputError, match="returned HammerTest, but modes are needed"):
         read_modes(path)
     same = run(examples()[0])["same"]
     register_reader(".abc", lambda _: same)
@@ -182,7 +182,10 @@ def test_one_frf_in_two_files_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("rule", "says"),
     [
-        ({"match": "p1.csv", "node": 3, "column": "ree"}, r"\[\[file\]\] 1: no \[\[column\]\] is 'ree'"),
+        (
+            {"match": "p1.csv", "node": 3, "column": "ree"},
+            r"\[\[file\]\] 1: there is no \[\[column\]\] 'ree'",
+        ),
         ({"match": "p1.csv", "node": 3, "direction": "up"}, r"\[\[file\]\] 1: direction 'up' is invalid"),
     ],
 )
@@ -262,10 +265,13 @@ def test_units_and_scale_of_single_files(tmp_path):
 @pytest.mark.parametrize(
     ("rule", "says"),
     [
-        ('match = "P{node}_{node}.csv"', r"\{node\} stands once in match"),
-        ('match = "P{node}.csv"\nnode = 3', r"\{node\} stands once in match, and not beside a key"),
+        ('match = "P{node}_{node}.csv"', r"\{node\} may occur once in match"),
+        (
+            'match = "P{node}.csv"\nnode = 3',
+            r"\{node\} may occur once in match, and not together with the key",
+        ),
         ('match = "P*.csv"', "states nothing about these files"),
-        ('match = "P*.csv"\nscale = "two"', "scale = 'two' is not of the kind float"),
+        ('match = "P*.csv"\nscale = "two"', "scale = 'two' is not of type float"),
     ],
 )
 def test_a_pattern_that_means_nothing_is_refused(rule, says):

@@ -108,7 +108,7 @@ def test_recorders_files(tmp_path: Path) -> None:
 def test_a_wav_file_lacks_its_full_scale_and_says_so(tmp_path: Path) -> None:
     wavfile.write(tmp_path / "a.wav", 1024, (np.stack([FORCE, MOTION], 1) * 300).astype("i2"))
     assert propose_layout([tmp_path / "a.wav"]).count("# scale = ...") == 2
-    with pytest.raises(InputError, match="holds parts of the full scale; give scale"):
+    with pytest.raises(InputError, match="holds fractions of full scale; give scale"):
         read_test(tmp_path / "a.wav", layout=proposed([tmp_path / "a.wav"]))
 
 
@@ -162,8 +162,10 @@ def test_a_rate_of_binary_times(kind: str) -> None:
 def test_volts_are_not_read_as_newtons(tmp_path: Path) -> None:
     path = table(tmp_path / "a.csv", "Time [s],Hammer [V],Acc [mV]\n", TIME, FORCE, MOTION)
     text = propose_layout([path])
-    assert 'unit = "V"  # as the file states it, and none of force: write "N" and scale' in text
-    with pytest.raises(InputError, match=r"'V' is no unit of force .* and scale = \.\.\. for what one volt"):
+    assert 'unit = "V"  # from the file, but not a unit of force: write "N" and scale' in text
+    with pytest.raises(
+        InputError, match=r"'V' is not a known unit of force.* and scale = \.\.\. for the value of one volt"
+    ):
         read_test(path, layout=proposed([path]))
     mended = text.replace('unit = "V"', 'unit = "N"\nscale = 440.0').replace('"mV"', '"g"\nscale = 0.01')
     (test,) = read_test(path, layout=layout_from(tomllib.loads(mended)))

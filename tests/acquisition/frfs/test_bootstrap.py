@@ -106,7 +106,7 @@ def test_the_seed_decides():
 
 
 def test_what_cannot_be_drawn_is_refused(rng):
-    with pytest.raises(EstimationError, match="single usable hit at 1"):
+    with pytest.raises(EstimationError, match="only one usable hit at 1"):
         bootstrap_frfs(rig(1, hits=1), rng=rng)
     with pytest.raises(InputError, match="bootstrap"):
         bootstrap_frfs(rig(1), rng=rng, n=0)

@@ -97,7 +97,7 @@ def test_where_the_force_has_no_noise_the_assumption_is_stated_with_what_it_chan
     assert force_noise_decay(silent) is None
     assert stated.points[0].force is silent.points[0].force
     gain = np.exp(DECAY * silent.points[0].force.argmax(axis=1) / silent.rate).mean()
-    assert "taken to have been on both" in message and "--window-on responses" in message
+    assert "assumed to be on both" in message and "--window-on responses" in message
     times = [float(x) for x in re.findall(r"([0-9.]+) times", message)]
     assert times == pytest.approx([gain, np.sqrt(gain)], rel=0.01)
     other, _ = state_window(silent, decay=DECAY, on="responses")

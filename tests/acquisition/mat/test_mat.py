@@ -75,12 +75,12 @@ def test_a_sampling_rate_makes_the_lines_where_there_is_no_axis(tmp_path: Path, 
         {"rate": 1000.0, "mat": {**table, "frequency": "f"}},
         {"rate": 1000.0, "mat": {"frequency": "fn"}},
     ):
-        with pytest.raises(InputError, match="needs the frequency of lines or of modes"):
+        with pytest.raises(InputError, match="needs frequency, of the lines or of the modes"):
             layout_from({"mat": table} | more)
 
 
 def test_earlier_names_of_the_rate_are_refused_with_the_one_there_is() -> None:
-    with pytest.raises(InputError, match="rate_variable is called rate; write rate = 'fs'"):
+    with pytest.raises(InputError, match="the key is rate, not rate_variable; write rate = 'fs'"):
         layout_from({"rate_variable": "fs"})
     with pytest.raises(InputError, match=r"\[mat\] has no rate; write rate = 'fs' above it"):
         layout({"frfs": "H", "rate": "fs"})
@@ -139,7 +139,7 @@ def test_a_rule_places_the_one_reference_of_each_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no \\[\\[file\\]\\] rule of layout matches it"):
         read_mat(saved(tmp_path, "q5.mat", f=LINES, test=test), plan)
     modes = layout({"frequency": "fn", "shapes": "Phi", "dofs": ["1+Z", "2-Z"]}, file=rules)
-    with pytest.raises(InputError, match="places the FRFs of a file"):
+    with pytest.raises(InputError, match="gives the points of FRFs"):
         read_mat(mode_file(tmp_path), modes)
 
 
@@ -167,12 +167,12 @@ def test_a_mat_file_goes_through_the_front_door(tmp_path: Path) -> None:
         ({"frfs": "test"}, "is a structure; name one"),
         ({"frfs": "other"}, "is text"),
         ({"frequency": "a"}, "not a row or column"),
-        ({"unit": "kg"}, "no unit"),
+        ({"unit": "kg"}, "not a known unit"),
         ({"axes": ["line", "line"]}, "in order"),
         ({"responses": ["1"]}, "not a degree of freedom"),
         ({"quantity": "force"}, "quantity"),
         ({"frf": "x"}, "unknown key 'frf'"),
-        ({"frequency": 3}, "is no text"),
+        ({"frequency": 3}, "is not a text"),
         ({"responses": "1+Z"}, "not a list of texts"),
     ],
 )

@@ -66,7 +66,7 @@ def test_standard_deviations_of_shapes(tmp_path):
     modal = read_modes(path)
     assert modal.shape_sigma.tolist() == [[0.1, 0.3], [0.2, 0.4]]
     path.write_text("frequency,1+Z,3-Z,3-Z sigma\n10,1,2,0.2\n")
-    with pytest.raises(InputError, match=r"'1\+Z sigma' has no counterpart"):
+    with pytest.raises(InputError, match=r"'1\+Z sigma' is missing or belongs to no shape"):
         read_modes(path)
 
 
@@ -172,7 +172,7 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is unknown, is 'sigma' meant"),
+        ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is unknown; is 'sigma' meant"),
         ("frequency,sigma,x+Z\n10.5,0.1,1\n", "column 'x\\+Z' is unknown"),
         ("frequency\n10.5,0.1\n", "more values than the header has names"),
         ("frequency,sigma\n10.5,0.1\n11,0.1,7\n", "not a table of columns separated by commas"),

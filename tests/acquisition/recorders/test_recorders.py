@@ -135,7 +135,7 @@ def test_full_scale_of_a_wav_file_is_the_scale(tmp_path: Path, kind: str | int) 
 
 def test_parts_of_a_full_scale_that_is_not_stated_are_refused(tmp_path: Path) -> None:
     wav24(tmp_path / "a.wav", np.round(np.stack([FORCE[0], MOTION[0]], axis=1) * 2**23))
-    with pytest.raises(InputError, match=r"'Channel 1' holds parts of the full scale; give scale"):
+    with pytest.raises(InputError, match=r"'Channel 1' holds fractions of full scale; give scale"):
         read_columns(tmp_path / "a.wav", wav_layout(scale=False))
     wavfile.write(tmp_path / "b.wav", 4096, np.stack([FORCE[0], MOTION[0]], axis=1))
     np.testing.assert_array_equal(
@@ -202,11 +202,11 @@ def test_groups_with_other_channels_are_one_record(tmp_path: Path) -> None:
 
 MISTAKES = [
     ("a.tdms", lambda p: tdms(p, rate=None), {}, r"no sampling rate; add rate = "),
-    ("a.tdms", tdms, {"motion": {"name": "accel"}}, r"'accel' is not there; the headings are 'force', 'acc'"),
+    ("a.tdms", tdms, {"motion": {"name": "accel"}}, r"'accel' is missing; the headings are 'force', 'acc'"),
     ("a.tdms", lambda p: tdms(p, slow=True), {}, r"rates, column 'acc' at 2 Hz and column 'force' at 2048 Hz"),
     ("a.tdms", tdms, {"rate": 1000.0}, r"2048 Hz by its header, at 1000 Hz by"),
     ("a.npz", npz, {"motion": {"name": "ac"}, "rate": "fs"}, r"no array 'ac' in it; there are 'fs', 'force'"),
-    ("a.npz", npz, {"motion": {"name": "acc[2]"}}, r"'acc\[2\]' is not there, the array has shape \(2, 64\)"),
+    ("a.npz", npz, {"motion": {"name": "acc[2]"}}, r"there is no 'acc\[2\]': the array has shape \(2, 64\)"),
     ("a.npz", npz, {"rate": "acc"}, r"rate = 'acc' of shape \(2, 64\) is not one positive number"),
     ("a.h5", hdf5, {"force": {"name": "force"}}, r"no data set 'force' in it; there are 'fs', 'test/acc'"),
     ("a.mat", mat, {"force": {"name": "force"}}, r"no variable 'force' in it"),
@@ -223,7 +223,7 @@ def test_mistakes_are_named(
 
 def test_named_arrays_have_no_numbers(tmp_path: Path) -> None:
     numbered = {"column": [{"index": 0, "quantity": "force"}, {"name": "acc", "quantity": "acceleration"}]}
-    with pytest.raises(InputError, match="its arrays have names and no numbers"):
+    with pytest.raises(InputError, match="its arrays are named, not numbered"):
         read_columns(npz(tmp_path / "a.npz"), layout_from({**numbered, "rate": "fs"}))
 
 

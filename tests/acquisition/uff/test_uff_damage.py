@@ -287,5 +287,5 @@ def test_values_too_large_to_be_meant_are_refused(tmp_path, reread, rng):
     start = bodies(data)[0][0]
     content = reread(data[: start + 64] + np.array([1e200]).tobytes() + data[start + 72 :])
     assert content.frfs is None and any(
-        "too large to be meant, the first at point 5" in w for w in content.warnings
+        "implausibly large, the first at point 5" in w for w in content.warnings
     )

@@ -118,7 +118,7 @@ def test_cylindrical_directions(tmp_path):
     assert np.allclose(content.geometry.direction(Dof(3, 2)), [-half, half, 0], atol=1e-12)
     assert np.array_equal(content.geometry.direction(Dof(2, -1)), [-1, 0, 0])
     assert np.array_equal(content.geometry.direction(Dof(99, 3)), [0, 0, 1])
-    assert any("nodes 3 are along axes of their own" in w for w in content.warnings)
+    assert any("nodes 3 have local axes" in w for w in content.warnings)
 
 
 def test_faulty_systems_are_said(tmp_path):

@@ -103,7 +103,7 @@ def test_frac_and_fdac(rng):
 
 
 def test_what_does_not_fit_is_refused(rng):
-    with pytest.raises(InputError, match="same degrees of freedom"):
+    with pytest.raises(InputError, match="for each degree of freedom in common"):
         mac(shapes(rng), shapes(rng, n_dofs=6))
     for function in (msf, comac, ecomac):
         with pytest.raises(InputError, match="paired one to one"):

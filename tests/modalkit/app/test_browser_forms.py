@@ -171,7 +171,7 @@ def test_a_folder_of_text_becomes_a_study(browser, serve, tmp_path):
     tab.locator(f'[data-file="{names[3]}"]').uncheck()
     tab.locator("#import-usable", has_text="3 hits at 2 points").wait_for()
     tab.locator("#import-unit-1").fill("V")
-    tab.locator("#import-error", has_text="'V' is no unit of force").wait_for()
+    tab.locator("#import-error", has_text="'V' is not a known unit of force").wait_for()
     assert tab.locator("#import-write").is_disabled()
     tab.locator("#import-unit-1").fill("lbf")
     tab.locator("#import-usable").wait_for()

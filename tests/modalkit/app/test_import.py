@@ -59,7 +59,7 @@ def test_every_guess_has_its_reason(tmp_path: Path) -> None:
     assert force["role"] == "force" and "quantity: by its unit, N" in force["why"]
     assert "node: by the file's name" in force["why"]
     assert response["unit"] == "m/s2" and "unit: by its heading" in response["why"]
-    assert "behind a word for points" in form["why"]["match"]
+    assert "follows a word for points" in form["why"]["match"]
     assert reasons_in("# rate = ...  # needed\n[[column]]\n# unit: stated\n") == {
         ("", 0): {"rate": "needed"},
         ("column", 0): {"unit": "stated"},
@@ -97,7 +97,7 @@ def _pattern(form: Form) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (_unit, "column 'hammer [N]': 'V' is no unit of force"),
+        (_unit, "column 'hammer [N]': 'V' is not a known unit of force"),
         (_node, "column 'acc 1 [m/s2]': node: 'tip' is not a whole number"),
         (_two_times, "columns 'time' and 'acc 1 [m/s2]' are both time"),
         (_no_force, "this form: 0 columns of force and 1 of response"),

@@ -47,8 +47,8 @@ def test_responses_without_a_force_are_the_reason_that_inspect_gives(tmp_path: P
     kept = [part for k, part in enumerate(whole) if k != 1]
     path.write_text("    -1\n    58".join(kept), encoding="ascii")
     (reason,) = read_files(path).reasons
-    assert "no force among them" in reason
-    with pytest.raises(InputError, match="no force among them"):
+    assert "without a force" in reason
+    with pytest.raises(InputError, match="without a force"):
         read(path)
 
 
