@@ -148,7 +148,7 @@ def join(content: Content, a: Arguments) -> str:
     if not left:
         raise InputError("this is the last line; join other points first")
     test["lines"] = left
-    return f"{'join' if joined else 'part'} points {pair[0]} and {pair[1]}"
+    return f"{'connect' if joined else 'disconnect'} points {pair[0]} and {pair[1]}"
 
 
 def set_value(content: Content, a: Arguments) -> str:

@@ -72,7 +72,7 @@ class Guard:
             headers.setdefault(name.lower(), []).append(value)
         hosts = {f"{name}:{self.port}".encode() for name in ("127.0.0.1", "localhost", "[::1]")}
         if len(headers.get(b"host", [])) != 1 or headers[b"host"][0] not in hosts:
-            return "this address is not the app's own"
+            return "this address does not belong to the app"
         origins = {b"http://" + host for host in hosts}
         if any(origin not in origins for origin in headers.get(b"origin", [])):
             return "requests from another site are refused"
@@ -83,7 +83,7 @@ class Guard:
         ):  # a link to the page, in a terminal that is a page itself, may be followed
             return "requests from another site are refused"
         if scope["method"] not in ("GET", "HEAD") and headers.get(b"content-type") != [b"application/json"]:
-            return "a change is sent as JSON"
+            return "changes must be sent as JSON"
         if any(not n.isdigit() or int(n) > LARGEST for n in headers.get(b"content-length", [])):
             return "the request is too long"
         if b"transfer-encoding" in headers:

@@ -61,7 +61,7 @@ class Opened:
         for name in files_of(content):
             if name not in known and not (folder / name).resolve().is_relative_to(folder):
                 raise StudyError(
-                    f"{name}: lies outside the study's folder; copy it there, or start the app anew"
+                    f"{name}: lies outside the study's folder; copy it there, or start the app again"
                 )
         return study_of(dict(content), self.study_path)
 
@@ -136,7 +136,9 @@ def open_path(path: Path, *, layout: Path | None = None) -> Opened:
     """
     if path.suffix.lower() == ".toml":
         if layout is not None:
-            raise StudyError(f"{path}: a study names its layout itself; write it there")
+            raise StudyError(
+                f"{path}: --layout is not for studies; name the layout under [test] in the study"
+            )
         read_study(path)
         return Opened(path, path, tomllib.loads(path.read_text(encoding="utf-8-sig")))
     if not path.is_file():

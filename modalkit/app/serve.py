@@ -110,6 +110,6 @@ def _listening(port: int) -> socket.socket:
         listener.bind((LOOPBACK, port))
     except OSError as error:
         listener.close()
-        raise InputError(f"--port {port}: cannot be listened at ({error.strerror}); give another") from error
+        raise InputError(f"--port {port}: cannot be used ({error.strerror}); give another") from error
     listener.listen(64)
     return listener

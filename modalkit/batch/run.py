@@ -151,10 +151,10 @@ def _kept(journal: Journal | None) -> list[Part]:
         return []
     header, *lines = journal.found
     if header.get("schema") != SCHEMA:
-        raise InputError(f"{journal.path}: no store of a batch ({SCHEMA}); name another table")
+        raise InputError(f"{journal.path}: not a store of a batch ({SCHEMA}); name another table")
     if header.get("version") != __version__:
         raise InputError(
-            f"{journal.path}: made by modalkit {header.get('version')}, this is {__version__}; remove it to begin anew"
+            f"{journal.path}: made by modalkit {header.get('version')}, this is {__version__}; remove it to start again"
         )
     parts = []
     for line in (line for line in lines if line != _FINISHED):
@@ -162,11 +162,11 @@ def _kept(journal: Journal | None) -> list[Part]:
             part = Part(**{key: value for key, value in line.items() if key != "sha256"})
         except TypeError as error:
             raise InputError(
-                f"{journal.path}: a line is no result ({error}); remove it to begin anew"
+                f"{journal.path}: a line is not a result ({error}); remove it to start again"
             ) from error
         if _line(part) != line:
             raise InputError(
-                f"{journal.path}: the result of {part.name} was changed; remove it to begin anew"
+                f"{journal.path}: the result of {part.name} was changed; remove it to start again"
             )
         parts.append(part)
     return [part for part in parts if part.record is not None]

@@ -144,7 +144,7 @@ def checked(path: Path, lines: Sequence[Mapping[str, Any]]) -> dict[int, Outcome
         if not isinstance(index, int) or ("commitment" in line) == ("outcome" in line):
             raise InputError(f"{path}, line {number}: neither a commitment nor an outcome; it was changed")
         if index in outcomes:
-            raise InputError(f"{where}: goes on after it was opened; the store was changed")
+            raise InputError(f"{where}: has entries after it was opened; the store was changed")
         if "commitment" in line:
             published[index] = str(line["commitment"])
             continue
@@ -192,7 +192,7 @@ def _digest(seed: int, salt: str) -> str:
 
 def _check_header(path: Path, header: Mapping[str, Any]) -> None:
     if header.get("schema") != SCHEMA or not {"version", "plan", "seed"} <= header.keys():
-        raise InputError(f"{path}: no store of a blind run ({SCHEMA}); name another file")
+        raise InputError(f"{path}: not a store of a blind run ({SCHEMA}); name another file")
     seed = header["seed"]
     try:
         bytes.fromhex(seed["salt"])
@@ -206,7 +206,9 @@ def _check_header(path: Path, header: Mapping[str, Any]) -> None:
 def _check_seed(path: Path, header: Mapping[str, Any], seed: int) -> None:
     digest = _digest(seed, header["seed"]["salt"])
     if not hmac.compare_digest(digest, header["seed"]["pbkdf2_sha256"]):
-        raise InputError(f"{path}: begun with another seed than {seed}; give the --seed printed by that run")
+        raise InputError(
+            f"{path}: the run was started with a seed other than {seed}; give the --seed that it printed"
+        )
 
 
 def _check_run(path: Path, header: Mapping[str, Any], seed: int, plan: DrawRanges) -> None:
@@ -221,6 +223,6 @@ def _check_run(path: Path, header: Mapping[str, Any], seed: int, plan: DrawRange
         was, stated = header["plan"].get(name), now.get(name)
         if was != stated:
             raise InputError(
-                f"{path}: begun with {name} = {was}, now it is {stated}; resume with the options it was begun with"
+                f"{path}: the run was started with {name} = {was}, now it is {stated}; resume with the same options"
             )
     _check_seed(path, header, seed)

@@ -101,7 +101,7 @@ def blind(
     asked = {"STUDY": study is not None, "--real": real or data is not None, "--check": check is not None}
     job = _only_one([name for name, is_asked in asked.items() if is_asked])
     if report is not None and job != "STUDY":
-        raise InputError("--report: is of a STUDY; name one, or use --markdown and --json")
+        raise InputError("--report needs a STUDY; name one, or use --markdown and --json")
     _check_together(job, [name for name, value in given.items() if _is_given(value)])
     _check_numbers(trials, seed, workers, least=0 if study is not None else 1)
     check_outputs(
@@ -161,8 +161,8 @@ def _check_together(job: str, given: Sequence[str]) -> None:
     """Refuse options that do not go together."""
     idle = [name for name in given if job and name not in _USED[job]]
     if idle:
-        do, them = ("does", "it") if len(idle) == 1 else ("do", "them")
-        raise InputError(f"{', '.join(idle)} {do} not go with {job}; leave {them} out")
+        them = "it" if len(idle) == 1 else "them"
+        raise InputError(f"{', '.join(idle)} cannot be used with {job}; leave {them} out")
     if "--resume" in given and "--store" not in given:
         raise InputError("--resume needs the --store of the run to continue")
 

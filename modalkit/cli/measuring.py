@@ -277,7 +277,7 @@ def _identified(
 
         if statement != ProcessingOptions():
             raise StudyError(
-                f"{files[0]}: a study states under [test] how its files are treated; write it there"
+                f"{files[0]}: these options are not for studies; state them under [test] in the study"
             )
         return process(
             read_study(files[0]),
@@ -293,7 +293,7 @@ def _identified(
         return found, found.identify(band=band, order=order, add=add, drop=drop, progress=work.begin)
     if order is not None or add or drop:
         raise InputError(
-            f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"
+            f"{found.source}: contains modes; --order, --add and --drop are for the identification from FRFs"
         )
     return None, found.identify(band=band)
 

@@ -107,17 +107,17 @@ def show_tables(found: Forecast) -> None:
     """Print thresholds, separations and changes."""
     show_table(
         _thresholds(found.now),
-        f"Severities: seen and separated at {SEEN:g} sigma beyond what tolerances explain, surely at {SURE:g}",
+        f"Severities from which effects are seen and separated ({SEEN:g} sigma beyond tolerances), surely ({SURE:g})",
     )
     if len(found.now.names) <= WIDEST:
         show_table(
             _separations(found.now),
-            "Separation [sigma] of each effect, as large as asked about, from the nearest case of each other effect",
+            "Separation [sigma] of each effect, at the severity asked about, from the nearest case of every other",
         )
     if offered(found):
-        show_table(_changes(found), "What a change gains", digits={"times smaller": 2, "share separated": 3})
+        show_table(_changes(found), "Gain of each change", digits={"times smaller": 2, "share separated": 3})
     if idle := [one.change.measure for one in found.advice if one.worth <= 0]:
-        out.print(f"Tried, without gain on the whole: {'; '.join(idle)}", markup=False)
+        out.print(f"Tried, without overall gain: {'; '.join(idle)}", markup=False)
         out.print()
 
 

@@ -96,7 +96,7 @@ def _from_when(now: DesignForecast) -> str:
     words = []
     for name in hard:
         limit = now.limits[name]
-        never = f"{name} at no severity ({limit.nearest} has the same effect)"
+        never = f"{name} never ({limit.nearest} has the same effect)"
         words.append(statement(now, name, limit.separated) or never)
     return f"Late:    separated from all others only above these severities: {'; '.join(words)}."
 

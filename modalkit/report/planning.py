@@ -83,7 +83,7 @@ def thresholds_table(document: PlanDocument) -> Raw:
         ]
         for one in document["now"]["effects"]
     ]
-    statement = f"Seen: {SEEN:g} standard deviations beyond what tolerances explain; surely: {SURE:g} from all others."
+    statement = f"Seen: {SEEN:g} standard deviations beyond tolerances; surely: {SURE:g} from all others."
     return table(statement, columns, rows)
 
 
@@ -105,8 +105,8 @@ def changes_table(found: Forecast) -> Raw:
         for one in offered(found)
     ]
     idle = [one.change.measure for one in found.advice if one.worth <= 0]
-    more = f" Without gain on the whole: {'; '.join(idle)}." if idle else ""
-    return table(f"Changes of the test that were tried, the most worth first.{more}", columns, rows)
+    more = f" Without overall gain: {'; '.join(idle)}." if idle else ""
+    return table(f"Changes of the test that were tried, best first.{more}", columns, rows)
 
 
 def _trials(checked: Check | None) -> Raw:

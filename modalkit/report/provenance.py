@@ -105,7 +105,7 @@ def _files(caption: str, files: Sequence[tuple[str, Path]]) -> Raw:
         try:
             size, digest = path.stat().st_size, fingerprint(path)
         except OSError:
-            rows.append([name, None, "not there any more"])
+            rows.append([name, None, "no longer there"])
             continue
         rows.append([name, size, element("code", digest)])
     columns = [Column("file"), Column("bytes", lambda value: f"{value:.0f}"), Column("sha256")]
@@ -128,5 +128,5 @@ def _text(path: Path) -> Raw:
     try:
         content = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError):
-        return element("p", "It cannot be read any more.")
+        return element("p", "It can no longer be read.")
     return Raw(element("pre", content).markup.replace("<br>", "\n"))

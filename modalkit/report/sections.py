@@ -39,7 +39,7 @@ def the_gap(diagnosis: Diagnosis) -> Raw:
     gap = diagnosis.gap
     words = (
         f"Frequencies differ by {percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}. "
-        "With the stated tolerances and without any cause, a gap like this in all data has "
+        "Without any cause, noise and the stated tolerances produce a misfit of all data like this or worse with "
         f"{p_value(diagnosis.p_value)}."
     )
     studies = list(dict.fromkeys(gap.modes["study"]))
@@ -133,7 +133,7 @@ def _zones(diagnosis: Diagnosis) -> Raw:
         return Raw("")
     values = [zone.probability for zone in where.zones]
     if max(values) - min(values) < 0.01:  # zones whose probabilities differ by less are not listed
-        return element("p", f"All {len(values)} zones are alike: {probability(values[0])} each.")
+        return element("p", f"All {len(values)} zones are equally probable: {probability(values[0])} each.")
     statement = "Zones and the probability that the cause sits in each."
     if where.zones_by == "regions":
         statement = (
@@ -238,7 +238,7 @@ def _why(row: Ranked, diagnosis: Diagnosis) -> str:
 def _why_not_alone(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "the answer"
-    return "rejected: they would not make such a gap"
+    return "rejected: they cannot produce such a gap"
 
 
 def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:

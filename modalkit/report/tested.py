@@ -208,7 +208,7 @@ def _moving(modal: ModalData, both: bool) -> str:
 
 
 def _lines(placed: bool) -> str:
-    return "Lines are the test's own; surfaces stand only where these close one." if placed else ""
+    return "Lines are those of the test; a surface is drawn only where lines enclose it." if placed else ""
 
 
 def _beside(session: Session | None) -> tuple[Beside | None, str]:

@@ -79,7 +79,7 @@ def drifting(found: Sequence[ModalSystem], rate: float) -> list[AtHit | None]:
     counts = [len(system.points) for system in found]
     if sum(counts) < 2:
         raise StudyError(
-            "drift: one point is hit, and all that it moves is measured at once: nothing drifts over it"
+            "drift has no effect: one point is hit, and all responses to it are measured at once"
         )
     factors = np.split(1.0 + rate * np.linspace(-0.5, 0.5, sum(counts)), np.cumsum(counts)[:-1])
     return [partial(_drifted, system, own) for system, own in zip(found, factors, strict=True)]

@@ -47,8 +47,8 @@ def deck_of(model: ModelTable, file: Callable[[str], Path]) -> DeckModel:
     for region in model.region:
         if own := [key for key in OWN if getattr(region, key) is not None]:
             raise StudyError(
-                f"[[model.region]] {region.name!r} takes no {', '.join(own)} on a deck: it is an element set, of its "
-                'name or set = "..."'
+                f"[[model.region]] {region.name!r} takes no {', '.join(own)} on a deck, where a region is an element "
+                'set; give its name, or set = "..."'
             )
     return read_deck_model(
         file(model.deck), [(r.name, r.set or r.name) for r in model.region], units=model.units or SI

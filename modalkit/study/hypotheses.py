@@ -133,7 +133,7 @@ def _range(table: HypothesisTable, unit: str, hint: str = "") -> tuple[float, fl
     except ValueError as error:
         raise StudyError(f"[[hypothesis]] {table.name!r}: {error}{hint}") from error
     if not table.parameter and low <= 0.0 <= high and max(-low, high) <= 0:
-        raise StudyError(f"[[hypothesis]] {table.name!r}: its range holds nothing but the unchanged model")
+        raise StudyError(f"[[hypothesis]] {table.name!r}: its range contains only the unchanged model")
     return low, high
 
 
@@ -186,7 +186,7 @@ def _factor_range(table: HypothesisTable, nominal: float, *, of_deck: bool) -> t
     what = f"[[hypothesis]] {table.name!r}"
     if nominal == FACTORS_ALONE.E:
         lacks = (
-            "no card of the deck states it of all its elements"
+            "no single card of the deck states it for all elements"
             if of_deck
             else "the study has no [model.material]"
         )
@@ -197,7 +197,7 @@ def _factor_range(table: HypothesisTable, nominal: float, *, of_deck: bool) -> t
         if high < nominal / FAR or low > nominal * FAR:
             raise StudyError(
                 f"{what}: range = [{low:g}, {high:g}] {unit} is far from the model's value, {name} = {nominal:.4g} "
-                f"{unit}; give the range in {unit} or with a unit, as an update gives {name}, not as factors"
+                f"{unit}; give values of {name} in {unit} or with a unit, not factors"
             )
     if not low > 0:
         raise StudyError(f"{what}: {name} must be positive over its whole range")
@@ -223,8 +223,8 @@ def _number(deck: DeckModel, table: HypothesisTable) -> Hypothesis | None:
     ends = found.nominal * found.low, found.nominal * found.high
     if low < ends[0] or high > ends[1]:
         raise StudyError(
-            f"{what}: range = [{low:g}, {high:g}] {found.unit} reaches beyond [{ends[0]:.4g}, {ends[1]:.4g}] "
-            f"{found.unit}, between which the deck is run; in it {found.name} is {found.nominal * found.start:.4g}"
+            f"{what}: range = [{low:g}, {high:g}] {found.unit} exceeds [{ends[0]:.4g}, {ends[1]:.4g}] {found.unit}, "
+            f"the range in which the deck is run; its own {found.name} is {found.nominal * found.start:.4g}"
         )
     changes = tuple(
         deck.change({found: end / found.nominal}) for end in (low, high) if end / found.nominal != found.start

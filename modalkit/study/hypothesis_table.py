@@ -42,14 +42,12 @@ class HypothesisTable(Strict):
         from updating import LIBRARY  # loaded where a study has a hypothesis
 
         if self.name in LIBRARY:
-            raise ValueError(f"name = {self.name!r} is that of an effect; give it a name of its own")
+            raise ValueError(f"name = {self.name!r} is the name of an effect; choose another")
         if wrong := sorted(SIGNS & set(self.name)):
-            raise ValueError(
-                f"name = {self.name!r} has a {wrong[0]!r}, which stands behind names; leave it out"
-            )
+            raise ValueError(f"name = {self.name!r} contains {wrong[0]!r}, which is reserved; leave it out")
         matrices = self.stiffness is not None or self.mass is not None
         if matrices + (self.deck is not None) + (self.parameter is not None) != 1:
-            raise ValueError(f"{self.name!r} takes stiffness, mass or both; or deck; or parameter")
+            raise ValueError(f"{self.name!r} needs stiffness, mass or both; or deck; or parameter")
         if self.parameter is not None and self.range is None:
             raise ValueError(f"{self.name!r}: a parameter needs its range, [low, high]")
         return self

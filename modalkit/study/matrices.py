@@ -87,7 +87,7 @@ def matrices_spec(model: ModelTable, imported: Imported, damping: Damping) -> Sp
     material = model.material
     if material is not None and material.density < LIGHTEST:
         raise StudyError(
-            f"[model.material] density = {material.density:g}: no solid weighs so little; it is in kg/m3, and E in Pa, "
+            f"[model.material] density = {material.density:g}: no solid is so light; it is in kg/m3, and E in Pa, "
             "whatever the units of the matrices"
         )
     if named := [region.name for region in model.region if region.set]:

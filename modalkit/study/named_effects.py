@@ -61,7 +61,7 @@ def parse_effect(
         try:
             typed = _typed(effect, parameter, stated)
             if typed is None:
-                raise StudyError(f"{entry!r} is no PARAM=VALUE; write {name}:PARAM=VALUE,...")
+                raise StudyError(f"{entry!r} is not PARAM=VALUE; write {name}:PARAM=VALUE,...")
             values[parameter] = stated_value(effect, parameter, typed, kind)
         except StudyError as error:
             raise InputError(f"--effect {text}: {error}") from error

@@ -54,7 +54,7 @@ def check_units(model: ModelTable) -> None:
     for name, size in sizes.items():
         if not SIZES[0] <= size <= SIZES[1]:
             raise StudyError(
-                f"[model] {name} = {size:g} m: nothing of that size is a {model.type}; check its unit"
+                f"[model] {name} = {size:g} m: this is implausible for a {model.type}; check its unit"
             )
     _check_thickness(model.type, **sizes)
 
@@ -66,9 +66,9 @@ def _check_material(material: MaterialTable) -> None:
     found = f"[model.material] E = {material.E:g} Pa with density = {material.density:g} kg/m3"
     meant = _guess(*stated)
     if meant is None:
-        raise StudyError(f'{found}: no solid is like that; check both, or write their units, as "210 GPa"')
+        raise StudyError(f'{found}: no solid has such values; check both, or write their units, as "210 GPa"')
     raise StudyError(
-        f"{found}: no solid is like that; probably {meant} is meant: write it so, or in SI units"
+        f"{found}: no solid has such values; probably {meant} is meant: write it so, or in SI units"
     )
 
 
@@ -103,6 +103,6 @@ def _check_thickness(kind: str, length: float, width: float, thickness: float) -
         return
     meant = f'; probably thickness = "{thickness:g} mm" is meant' if thickness < 1000 * least else ""
     raise StudyError(
-        f"[model] thickness = {thickness:g} m on a {kind} of {length:g} x {width:g} m: it is no {kind} that is as "
-        f"thick as it is {'long' if kind == 'beam' else 'long or wide'}{meant}"
+        f"[model] thickness = {thickness:g} m on a {kind} of {length:g} x {width:g} m: a {kind} cannot be as thick "
+        f"as it is {'long' if kind == 'beam' else 'long or wide'}{meant}"
     )

@@ -106,7 +106,7 @@ class Study(Strict):
         if self.hypothesis:
             raise StudyError(
                 f"[[hypothesis]] {self.hypothesis[0].name!r} is for models given by matrices or a deck, found type "
-                f"{model.type}; what a beam or a plate may have, the effects of the library are"
+                f"{model.type}; for a beam or a plate use the effects of the library"
             )
         if given := [key for key in MATRICES_ONLY if getattr(model, key)]:
             raise StudyError(

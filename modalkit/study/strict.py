@@ -18,7 +18,7 @@ class Strict(BaseModel):
         """See that no key is ``true`` or ``false``, which would count as 1 or 0."""
         for key, value in table.items() if isinstance(table, dict) else ():
             if any(isinstance(v, bool) for v in (value if isinstance(value, list) else [value])):
-                raise ValueError(f"{key} is true or false; no key of a study is a switch")
+                raise ValueError(f"{key} cannot be true or false; give a number, text or list")
         return table
 
 

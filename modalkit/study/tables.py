@@ -161,14 +161,14 @@ class MeasurementTable(Strict):
         if self.modes is None:
             if self.shape_sigma is not None:
                 instead = (
-                    "for files the identification gives the uncertainty of shapes"
+                    "with files, the identification gives the uncertainty of shapes"
                     if self.files
-                    else "a planned test takes none, its forecast states the assumed uncertainty of shapes"
+                    else "for a planned test, the forecast states the uncertainty that it assumes"
                 )
-                raise ValueError(f"shape_sigma is of modes; {instead}: leave it out")
+                raise ValueError(f"shape_sigma is for modes only. Leave it out: {instead}")
             return self
         if self.files:
-            raise ValueError("files and modes are both given; modes stand in place of files: leave one out")
+            raise ValueError("files and modes are both given, but modes replace files: leave one out")
         of_mat = self.modes.lower().endswith(".mat")
         if of_mat and self.layout is None:
             raise ValueError(
@@ -181,8 +181,8 @@ class MeasurementTable(Strict):
             rows = {"add", "drop"} & {*stated}
             way = " (lines of the table), or set `band`, which leaves out the modes beyond it" if rows else ""
             raise ValueError(
-                f"{', '.join(stated)}: given for records or FRFs, but modes = {self.modes!r} are modes "
-                f"already; leave it out, and change the modes themselves if they need it{way}"
+                f"{', '.join(stated)}: is for records or FRFs, but modes = {self.modes!r} names modes; "
+                f"leave it out, and change the modes themselves if needed{way}"
             )
         return self
 

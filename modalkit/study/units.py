@@ -22,7 +22,7 @@ def share_or(word: str) -> BeforeValidator:
             return word
         share = si_value(value, "")
         if isinstance(share, int | float) and not 0 <= share < 1:
-            raise ValueError(f"{share:g} is not from 0 to below 1; write such a share, or {word!r}")
+            raise ValueError(f"{share:g} must be at least 0 and below 1; write such a share, or {word!r}")
         return share
 
     return BeforeValidator(read)

@@ -98,7 +98,7 @@ def shapes_page(modal: ModalData, beside: Beside | None, changed: Sequence[Chang
         "placed": placed,
         "why": ""
         if placed
-        else "neither file nor study gives coordinates: points stand in a row by their numbers; give places in [test]",
+        else "neither file nor study gives coordinates: points are drawn in a row, by number; give places in [test]",
         "lines": joined if placed else [[i, i + 1] for i in range(len(nodes) - 1)],
         "faces": closed_faces(places, [pair for pair in joined if max(pair) < len(measured)])
         if placed

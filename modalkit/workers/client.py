@@ -131,7 +131,7 @@ class WarmProcess:
             if hello is None or "ready" not in hello:
                 self._end()
                 raise EstimationError(
-                    f"the process `{' '.join(self.command)}` did not come up; start it by hand to see why"
+                    f"the process `{' '.join(self.command)}` did not start; start it by hand to see why"
                 )
             self._greeted = True
 

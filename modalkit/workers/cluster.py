@@ -244,6 +244,8 @@ def _result(future: Any) -> Any:
     try:
         return future.result()
     except KilledWorker as error:
-        raise EstimationError(f"a task ended its worker again and again: {error}") from error
+        raise EstimationError(f"a task stopped its worker several times: {error}") from error
     except (CancelledError, OSError) as error:
-        raise EstimationError("the cluster has gone; bring it back and go on with --resume") from error
+        raise EstimationError(
+            "the connection to the cluster was lost; restore it and continue with --resume"
+        ) from error

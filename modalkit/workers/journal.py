@@ -52,7 +52,7 @@ def read_journal(path: Path) -> tuple[list[dict[str, Any]], int]:
             document = json.loads(line)
         except (ValueError, RecursionError) as error:
             raise InputError(
-                f"{path}, line {number}: no JSON; the file was changed or is not a store of a run"
+                f"{path}, line {number}: not JSON; the file was changed or is not a store of a run"
             ) from error
         if not isinstance(document, dict):
             raise InputError(f"{path}, line {number}: not a record; the file is not a store of a run")

@@ -264,7 +264,7 @@ def _with_pairs(study: Study, table: MeasurementTable, measured: Measured) -> Me
         partners[distance.argmin()] = mode - 1 if mode else NO_PARTNER
     stated = partners[partners >= 0]
     if len(set(stated.tolist())) < len(stated):
-        raise StudyError(f"{study.path}: pairs give one model mode to two measured ones; decide for one")
+        raise StudyError(f"{study.path}: pairs give one model mode to two measured modes; keep one of them")
     return replace(measured, partners=partners)
 
 

@@ -185,7 +185,7 @@ def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -
         )
     if processing.window_on == "responses":
         warnings.append(
-            f"{frfs.source}: the files hold FRFs; a window on the responses alone cannot be set right in them"
+            f"{frfs.source}: the files hold FRFs; a window on the responses alone cannot be corrected there"
         )
     if processing.decay and frfs.decay:
         check_decay(frfs.source, frfs.decay, processing.decay)

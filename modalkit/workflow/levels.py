@@ -214,8 +214,8 @@ def _on_products(state: Examined, products: Products) -> tuple[str, ...]:
         return ()
     return (
         f"peaks that are products of modes are left out: {', '.join(products.names)}. Their modal constants grow with "
-        f"the force of the hits, from {state.found.weakest:.3g} to {state.found.strongest:.3g} N; those of a mode do "
-        "not. A joint that slips or closes makes such peaks; hit more softly to have fewer",
+        f"the force of the hits, from {state.found.weakest:.3g} to {state.found.strongest:.3g} N; those of modes do "
+        "not. A joint that slips or closes causes such peaks; softer hits reduce them",
     )
 
 
@@ -246,11 +246,11 @@ def _statement(model: ModalModel, found: LevelDependence, smeared: bool) -> str:
         for i in np.flatnonzero(follows_level(found))
     )
     what = (
-        f"hits are brought to one level of {found.level:.3g} N, by what each mode does at the level of each"
+        f"all hits are scaled to one level of {found.level:.3g} N, with the level dependence of each mode"
         if smeared
         else "one mode at two levels may look like two: treat close modes with different shapes with care"
     )
     return (
-        f"frequencies follow the force of the hits, from {found.weakest:.3g} to {found.strongest:.3g} N: {named}. A "
-        f"joint that slips or closes does that; {what}; hit all points equally hard"
+        f"frequencies follow the force of the hits, from {found.weakest:.3g} to {found.strongest:.3g} N: {named}. The "
+        f"usual cause is a joint that slips or closes; {what}. Hit all points equally hard"
     )

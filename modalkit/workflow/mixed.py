@@ -32,7 +32,7 @@ def with_read(
     pairs = list(zip(read.responses, read.references, strict=True))
     rows = [i for i, pair in enumerate(pairs) if _pair(*pair) not in hit]
     if len(rows) < len(pairs):
-        warnings.append("the files hold raw hits and FRFs; the FRFs were made afresh from the hits")
+        warnings.append("the files hold raw hits and FRFs; the FRFs were estimated again from the hits")
     if not rows:
         return made
     others = read.select(rows)

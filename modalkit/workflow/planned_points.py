@@ -81,7 +81,7 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
     if len(placed.rows) < len(stated):
         lost = stated[min(set(range(len(stated))) - set(placed.rows.tolist()))]
         raise StudyError(
-            f"{study.path}: [test] {keys}: {_written(lost)}: the model does not move that way there"
+            f"{study.path}: [test] {keys}: {_written(lost)}: the model cannot move in that direction there"
         )
     directions = None if spec.imported is None else np.array([key[1] for key in placed.keys])
     hit = tuple(dict.fromkeys(placed.index[:count].tolist()))

@@ -63,8 +63,7 @@ class ProcessingOptions:
         object.__setattr__(self, "layout", None if self.layout is None else Path(self.layout))
         if not (0 <= self.decay <= FASTEST and 0 <= self.window <= FASTEST):
             raise InputError(
-                f"windows of {self.decay:g} and {self.window:g} 1/s: decay rates are not negative, nor beyond "
-                f"{FASTEST:g} 1/s"
+                f"windows of {self.decay:g} and {self.window:g} 1/s: decay rates must be between 0 and {FASTEST:g} 1/s"
             )
         if self.estimator not in ESTIMATORS:
             raise InputError(f"unknown estimator {self.estimator!r}; use {', '.join(ESTIMATORS)}")

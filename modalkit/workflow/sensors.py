@@ -38,7 +38,7 @@ def without_sensors(frfs: FrfSet, masses: Sequence[tuple[str, float]], warnings:
         if dof not in there:
             known = ", ".join(str(d) for d in sorted(there)[:8])
             raise InputError(
-                f"{frfs.source}: no response at {name} to take a sensor off; responses are {known}"
+                f"{frfs.source}: no response at {name}, so no sensor mass can be removed there; responses are {known}"
             )
         if dof in given:
             raise InputError(f"{frfs.source}: the mass of the sensor at {name} is given twice; give it once")

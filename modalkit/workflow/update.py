@@ -85,7 +85,7 @@ def _by_modes(
         )
     for session, table in zip(sessions, tables, strict=True):
         if table.stages is not None or table.lines is not None:
-            raise StudyError(f'{session.study.path}: [update] stages and lines are of method = "frf"')
+            raise StudyError(f'{session.study.path}: [update] stages and lines need method = "frf"')
     weights = _weights(sessions)
     own = [list(dict.fromkeys([*table.named, *shared])) for table in tables]
     if len({tuple(table.data) for table in tables}) > 1:
@@ -94,7 +94,7 @@ def _by_modes(
     if not draws:
         return update(cases, parameters=own, shared=shared, weights=weights, data=tables[0].data)
     if tables[0].data != ["frequencies"]:
-        raise StudyError("--bootstrap draws frequencies anew; leave data out of [update]")
+        raise StudyError("--bootstrap resamples frequencies only; leave data out of [update]")
     rng = np.random.default_rng(seed)
     steps.begin(REDRAWING)
     frequencies = [_frequencies(session, rng, draws, steps) for session in sessions]
@@ -126,8 +126,8 @@ def _listed(session: Session) -> list[float]:
     if weights == "relative":
         return [1.0] * len(session.case.measured.frequency)
     raise StudyError(
-        f'{session.study.path}: [update] weights = "{weights}" does not go with the numbers that another study '
-        'lists; use numbers or "relative" in all'
+        f'{session.study.path}: [update] weights = "{weights}" cannot be combined with the numbers that another '
+        'study lists; use numbers or "relative" in all'
     )
 
 
@@ -136,7 +136,7 @@ def _by_frfs(session: Session, draws: int, seed: int, steps: Steps) -> FrfUpdate
         raise StudyError(f'{session.study.path}: [update] method = "frf" needs FRFs; give files in [test]')
     table, case = session.study.update, session.case
     if table.data != ["frequencies"] or table.weights != "covariance":
-        raise StudyError(f'{session.study.path}: [update] weights and data are of method = "eigenvalue"')
+        raise StudyError(f'{session.study.path}: [update] weights and data need method = "eigenvalue"')
     frfs = measured_frfs(session.identified, case.measured)
     if not draws:
         return update_frfs(case, frfs, parameters=table.named, stages=table.stages, lines=table.lines)

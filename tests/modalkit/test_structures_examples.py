@@ -67,16 +67,16 @@ FIRST = '[[hypothesis]]\nname = "joint 1 is loose"\nstiffness = "joint_1_loose.m
 REFUSED = [
     (FIRST.replace("joint_1_loose", "stiffness"), "is identical to the model's own, so the hypothesis changes nothing"),
     (FIRST.replace("joint_1_loose", "small"), "of order 12 and the model of order 228"),
-    (FIRST.replace("joint 1 is loose", "lumped_mass"), "'lumped_mass' is that of an effect"),
+    (FIRST.replace("joint 1 is loose", "lumped_mass"), "'lumped_mass' is the name of an effect"),
     (FIRST.replace("joint 1 is loose", "joint 2 is loose"), "'joint 2 is loose' is given twice"),
-    (FIRST.replace("joint 1 is loose", "joint.1"), "has a '.'"),
+    (FIRST.replace("joint 1 is loose", "joint.1"), "contains '.'"),
     (FIRST.replace('stiffness = "joint_1_loose.mtx"', 'deck = "loose.inp"'), 'for .model. type = "calculix"'),
     (FIRST.replace('stiffness = "joint_1_loose.mtx"', 'parameter = "beam_1.E"'), "needs its range"),
     (FIRST.replace('stiffness = "joint_1_loose.mtx"', 'parameter = "web.E"\nrange = [1e9, 2e9]'), "known: E, dens"),
     (FIRST + '\nmass = "mass.mtx"', "mass = 'mass.mtx' is identical to the model's own"),
     (FIRST + "\nrange = [1.0, 0.0]", "ends before it begins"),
     (FIRST + "\nrange = [0.0, 3.0]", "at 3: stiffness matrix indefinite"),
-    (FIRST + '\nparameter = "E"', "takes stiffness, mass or both; or deck; or parameter"),
+    (FIRST + '\nparameter = "E"', "needs stiffness, mass or both; or deck; or parameter"),
 ]  # fmt: skip
 
 

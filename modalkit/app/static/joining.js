@@ -58,12 +58,12 @@ export function joining(app, view) {
         ? [
             field("Point", ends[0]),
             field("and", ends[1]),
-            button("Join or part", () => app.quiet(join(...ends.map((one) => Number(one.value)))), { id: "join" }),
+            button("Connect or disconnect", () => app.quiet(join(...ends.map((one) => Number(one.value)))), { id: "join" }),
             h(
               "span",
               { class: "muted", "aria-live": "polite" },
               first === null
-                ? "or click two points: they are joined, or parted if they are"
+                ? "or click two points to connect them, or to disconnect them if they are connected"
                 : `from point ${page.nodes[first]}: click another one`,
             ),
           ]

@@ -154,7 +154,7 @@ def score_again(document: dict[str, Any]) -> Score:
     schema = str(document.get("schema"))
     if schema not in (SCHEMA, EARLIER) or "outcomes" not in document:
         raise InputError(
-            f"schema {schema!r} is neither {SCHEMA} nor {EARLIER}; give what `blind --json` wrote"
+            f"schema {schema!r} is neither {SCHEMA} nor {EARLIER}; give a file written by `blind --json`"
         )
     from modalkit.simulator.drawing.ranges import DrawRanges
 

@@ -118,11 +118,11 @@ def _design(study: Study, test: _Test, layout: Layout, problem: SpecimenProblem)
 
 def _on_damping(design: Design) -> list[str]:
     stated = (
-        "damping as the model expects it"
+        "damping as expected by the model"
         if design.damping_known
         else "the model states no expected damping: damping is not used"
     )
-    return [stated, *(["with the baseline, what changed since is asked about"] if design.baseline else [])]
+    return [stated, *(["with the baseline, only changes since then are forecast"] if design.baseline else [])]
 
 
 def _left_out(study: Study) -> list[str]:
@@ -249,8 +249,8 @@ def _in_band(study: Study, frequency: FloatArray, shown: IntArray) -> tuple[IntA
     band = study.test.band
     if len(shown) < 2:
         raise StudyError(
-            f"{study.path}: [test] points: of the model's modes {len(shown)} move any point; a forecast needs two: do "
-            "the points lie at supports, or point where nothing moves?"
+            f"{study.path}: [test] points: {len(shown)} of the model's modes move any point, but a forecast needs two; "
+            "check whether the points lie at supports, or along directions without motion"
         )
     if band is None:
         last, above = frequency[shown[min(FIRST_MODES, len(shown) - 1) - 1 :][:2]]

@@ -97,7 +97,7 @@ def _orthotropy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     end = float(np.log(2.0))
     yield Family(
         name=effect.name, values=lambda q, _: {"ratio": float(np.exp(q)), "shear_ratio": 1.0}, low=-end,
-        high=end, clear=0.1, words="a modulus along over that across off by more than", amount=per_cent,
+        high=end, clear=0.1, words="a ratio of moduli, along to across, off by more than", amount=per_cent,
         always=True,
     )  # fmt: skip
 

@@ -198,7 +198,7 @@ def test_a_process_that_always_dies_is_given_up(empty: Path) -> None:
 def test_a_process_that_does_not_come_up_is_an_error(empty: Path) -> None:
     with (
         Diagnoser(command=[sys.executable, "-c", "pass"]) as diagnoser,
-        pytest.raises(EstimationError, match="did not come up"),
+        pytest.raises(EstimationError, match="did not start"),
     ):
         diagnoser(empty)
 

@@ -15,11 +15,11 @@ REFUSED = [
     ({"test": ""}, "the points to be hit are not stated; give .test. points"),
     ({"test": "points = [0.1, 0.2]"}, "0.1 is a place along a beam; write a node and its direction"),
     ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is not one of the model's, which reach from 1 to 6"),
-    ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
+    ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model cannot move in that direction"),
     ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
     (
         {"test": f'{POINTS}\nshape_sigma = "4 %"'},
-        "shape_sigma is of modes; a planned test takes none.*: leave it out",
+        "shape_sigma is for modes only. Leave it out: for a planned test",
     ),
     ({"test": 'points = ["here"]'}, "'here' is not a point; write a place along a beam"),
     ({"test": "points = [[0.1]]"}, "is not a point; write a place along a beam"),
@@ -41,7 +41,8 @@ def test_points_at_supports_are_refused(tmp_path: Path) -> None:
     with (tmp_path / "nodes.csv").open("a") as table:
         table.write("7, 0, 0, 0, 1, ,\n8, 0, 0.1, 0, 1, ,\n")
     with pytest.raises(
-        StudyError, match="0 move any point; a forecast needs two: do the points lie at supports"
+        StudyError,
+        match="0 of the model's modes move any point, but a forecast needs two; check whether the points",
     ):
         bench_of(read_study(path))
 

@@ -101,7 +101,7 @@ def test_provenance_tells_files_and_text(tmp_path: Path) -> None:
     assert 'modes = "modes.csv"' in text
     (tmp_path / "modes.csv").unlink()
     text = Reader(diagnosis_page(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
-    assert "not there any more" in text
+    assert "no longer there" in text
 
 
 def test_fingerprints_are_those_of_the_standard(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ def test_a_plan_reports_its_lines(call: Call, tmp_path: Path) -> None:
 
 def test_what_has_no_report_says_so_before_it_begins(call: Call, tmp_path: Path) -> None:
     code, _, error = call("blind", "--trials", "1", "--report", tmp_path / "x.html")
-    assert code == 2 and "--report: is of a STUDY" in error
+    assert code == 2 and "--report needs a STUDY" in error
     (tmp_path / "mine.html").write_text("mine", encoding="utf-8")
     code, _, error = call("identify", BEAM / "study.toml", "--report", tmp_path / "mine.html")
     assert code == 2 and "not a report written by modalkit" in error

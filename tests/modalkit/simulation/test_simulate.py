@@ -202,10 +202,10 @@ def test_transducers_along_turned_axes_point_the_model_s_way(tmp_path: Path) -> 
         ("senser_mass:mass=0.01", "did you mean sensor_mass?"),
         ("warp", "`modalkit effects` lists them"),
         ("sensor_mass", "it takes mass [kg], bulk [-], dx [m], found none"),
-        ("sensor_mass:mass=heavy", "is no PARAM=VALUE"),
+        ("sensor_mass:mass=heavy", "is not PARAM=VALUE"),
         ("sensor_mass:mass=-1", "must be positive"),
         ("shear:factor=2", "it takes no parameters, found factor"),
-        ("sensor_mass:mass=nan", "is no PARAM=VALUE"),
+        ("sensor_mass:mass=nan", "is not PARAM=VALUE"),
     ],
 )
 def test_a_wrong_effect_is_one_line_and_no_file(run: Run, tmp_path: Path, effect: str, message: str) -> None:

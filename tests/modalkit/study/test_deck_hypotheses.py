@@ -103,7 +103,7 @@ def test_what_cannot_be_supposed_is_refused_in_one_line(shells: ModuleType, tmp_
         (
             "TIP.thickness",
             (0.0001, 0.003),
-            r"'it': range = \[0.0001, 0.003\] m reaches beyond \[0.001802, 0.004805\] m",
+            r"'it': range = \[0.0001, 0.003\] m exceeds \[0.001802, 0.004805\] m",
         ),
         ("TOP.thickness", (0.002, 0.003), r"'it': TOP.thickness"),
         ("SEAT.thickness", (0.002, 0.003), r"'it': SEAT.thickness"),
@@ -134,7 +134,7 @@ def test_a_region_s_modulus_is_supposed_in_the_unit_of_an_update(
         (
             ('"35 GPa"', '"70 GPa"'),
             "E",
-            "E is a factor where no card of the deck states it of all its elements",
+            "E is a factor where no single card of the deck states it for all elements",
         ),
     ):
         with pytest.raises(StudyError, match=message):

@@ -161,7 +161,7 @@ REFUSED = [
     (STUDY + '[[model.region]]\nname = "a"\nx = [0, 1]\nthickness = 0.01\n', "have no thickness"),
     (STUDY.replace("nodes =", "knots ="), "unknown key model.knots"),
     (STUDY.replace("[model.material]", 'units = "mm"\n[model.material]'), "model.units: .*mm-t-s"),
-    (STUDY.replace("7850.0", "7.85e-9"), "density = 7.85e-09: no solid weighs so little; it is in kg/m3"),
+    (STUDY.replace("7850.0", "7.85e-9"), "density = 7.85e-09: no solid is so light; it is in kg/m3"),
     (STUDY.replace("210e9", "inf"), "model.material.E: .*finite"),
     (STUDY + '[[model.region]]\nname = ""\nx = [0, 1]\n', "model.region.0.name: "),
     (STUDY + '[update]\nparameters = ["E", "E"]\n', "update.parameters: .*'E' is given twice"),

@@ -145,5 +145,5 @@ def test_modes_of_a_matlab_file_are_data_of_a_study(tmp_path: Path) -> None:
     np.testing.assert_allclose(test.points[:, 0], POINTS)
     with pytest.raises(StudyError, match="must state the meaning"):
         read_study(written(tmp_path, "", "", study))
-    with pytest.raises(StudyError, match="layout: given for records"):
+    with pytest.raises(StudyError, match="layout: is for records"):
         read_study(written(tmp_path, FIVE, 'layout = "layout.toml"'))

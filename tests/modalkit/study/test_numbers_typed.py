@@ -146,7 +146,7 @@ def test_no_mode_is_near_what_is_no_number() -> None:
     with pytest.raises(InputError, match="no mode near nan Hz"):
         nearest_modes(poles, [float("nan")], np.ones(2, dtype=bool), 0.1)
     for value in (float("nan"), float("inf"), -1.0):
-        with pytest.raises(InputError, match="decay rates are not negative"):
+        with pytest.raises(InputError, match="decay rates must be between 0 and"):
             ProcessingOptions(decay=value)
 
 

@@ -133,7 +133,7 @@ def test_tests_that_do_not_go_together_are_refused(folder: Path) -> None:
 
 def test_frfs_beside_hits_are_made_afresh(folder: Path) -> None:
     found = read([folder / "hits.uff", folder / "frfs.uff"])
-    assert any("made afresh" in w for w in found.warnings)
+    assert any("estimated again" in w for w in found.warnings)
     assert len(found.frfs.responses) == 3
 
 

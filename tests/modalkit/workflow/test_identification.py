@@ -151,7 +151,7 @@ def test_what_cannot_act_is_said(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a window on responses is stated without its decay"):
         read(frf_file(tmp_path), processing=ProcessingOptions(window_on="responses"))
     stated = read(frf_file(tmp_path), processing=ProcessingOptions(window_on="responses", decay=2.0))
-    assert any("cannot be set right" in w for w in stated.warnings)
+    assert any("cannot be corrected" in w for w in stated.warnings)
 
 
 def test_a_point_with_a_single_hit_is_named(tmp_path: Path) -> None:

@@ -52,7 +52,7 @@ def test_frfs_at_the_points_of_hits_give_way_to_them_even_where_these_are_refuse
     dead = replace(HITS.points[1], motion=np.zeros_like(HITS.points[1].motion))
     found = read(written(tmp_path, FRFS, replace(HITS, points=(HITS.points[0], dead))))
     assert [d.node for d in found.frfs.references] == [1, 3, 4]
-    assert any("made afresh from the hits" in w for w in found.warnings)
+    assert any("estimated again from the hits" in w for w in found.warnings)
 
 
 def test_frfs_that_do_not_go_with_the_hits_are_left_out_by_name(tmp_path: Path) -> None:

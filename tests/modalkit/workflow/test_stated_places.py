@@ -119,5 +119,5 @@ def test_the_sigma_of_shapes_is_stated_or_guessed(tmp_path: Path) -> None:
     assert opened(tmp_path, columns).case.measured.guessed
     study = tmp_path / "study.toml"
     study.write_text('[test]\nfiles = ["a.uff"]\nshape_sigma = 0.1\n')
-    with pytest.raises(StudyError, match="shape_sigma is of modes"):
+    with pytest.raises(StudyError, match="shape_sigma is for modes"):
         read_study(study)
