@@ -12,12 +12,13 @@ SORT = "`effect`, `pair`, `none`, `outside` the library, or `left out` of it"
 class RateEntry(TypedDict):
     """The answer to a question: a share with its Wilson interval, or a number with its bootstrap interval."""
 
-    question: Annotated[str, "what is asked; where a number has a unit, it stands at the end of this"]
-    group: Annotated[str, "of which trials; `all` for all that it can be asked of"]
+    question: Annotated[str, "the question; ends with the unit of the number, if it has one"]
+    group: Annotated[str, "group of trials; `all` for all to which the question applies"]
     count: Annotated[
-        Maybe, "how often it is so; not whole where a class counts by its share; null for no share [-]"
+        Maybe,
+        "number of trials for which it is true; a class counts by its share; null where `rate` is not a share [-]",
     ]
-    total: Annotated[int, "of how many, or trials behind the number [-]"]
+    total: Annotated[int, "number of trials [-]"]
     rate: Annotated[
         Maybe, "`count / total`, or the number; null without any [-, or the unit of the question]"
     ]
@@ -35,7 +36,7 @@ class Severity(TypedDict):
     value: Annotated[Maybe, "stated value; null if not finite [SI]"]
     low95: Annotated[Maybe, "lower end; null without interval [SI]"]
     high95: Annotated[Maybe, "upper end; null without interval [SI]"]
-    error: Annotated[Maybe, "stated over true, less 1; null if not finite [-]"]
+    error: Annotated[Maybe, "relative error, stated over true minus 1; null if not finite [-]"]
     covered: Annotated[bool | None, "whether the interval holds the truth; null without one"]
     committed: Annotated[bool, "whether that set alone was the answer"]
 
@@ -47,7 +48,7 @@ class Points(TypedDict):
     parameter: Annotated[str, "`effect.parameter`"]
     true: Annotated[str, "hidden nodes"]
     said: Annotated[str, "stated nodes"]
-    same: Annotated[bool, "whether they are the same"]
+    same: Annotated[bool, "whether both sets of nodes are the same"]
 
 
 class PlaceError(TypedDict):
@@ -57,7 +58,7 @@ class PlaceError(TypedDict):
     effect: Annotated[str, "what was hidden"]
     sort: Annotated[str, SORT]
     nearest: Annotated[float, "error of the nearest place offered, over the span [-]"]
-    first: Annotated[float, "error of the first one [-]"]
+    first: Annotated[float, "error of the first place offered, over the span [-]"]
     places: Annotated[int, "places offered [-]"]
     covered: Annotated[bool | None, "whether the intervals hold the truth; null without any"]
     held: Annotated[bool, "whether the answer holds the effect"]
@@ -69,14 +70,16 @@ class Closing(TypedDict):
     trial: Annotated[int, "number of the trial [-]"]
     effect: Annotated[str, "what was hidden"]
     sort: Annotated[str, SORT]
-    metric: Annotated[str, "metric of the statement"]
-    true_metric: Annotated[str, "metric of the truth"]
-    said: Annotated[Maybe, "stated share; null where none is [%]"]
-    low95: Annotated[Maybe, "lower end; null likewise [%]"]
+    metric: Annotated[str, "metric of the stated share"]
+    true_metric: Annotated[str, "metric of the true share"]
+    said: Annotated[Maybe, "stated share of the gap that closes; null if none is stated [%]"]
+    low95: Annotated[Maybe, "lower end of its 95 % interval; null likewise [%]"]
     high95: Annotated[Maybe, "upper end; null likewise [%]"]
-    true: Annotated[Maybe, "what closes on the rig's own modes; null with nothing to close [%]"]
-    beyond: Annotated[Maybe, "on the modes above the band; null likewise [%]"]
-    held_out: Annotated[Maybe, "from the errors held out; null likewise [%]"]
+    true: Annotated[
+        Maybe, "true share, on the rig's own modes in the band; null if there is nothing to close [%]"
+    ]
+    beyond: Annotated[Maybe, "true share on the modes above the band; null likewise [%]"]
+    held_out: Annotated[Maybe, "share by the errors on modes held out; null likewise [%]"]
     covered: Annotated[bool | None, "whether the interval holds the truth; null without one"]
     held: Annotated[bool, "whether the answer holds the effect"]
 
@@ -93,25 +96,25 @@ class TrialEntry(TypedDict):
     visibility: Annotated[float, "by how much the effect moves the data beyond the tolerances [sigma]"]
     left_visible: Annotated[
         Maybe,
-        "what the library's best effect leaves of one that it lacks; null if the library has it [sigma]",
+        "residual after the best effect of the library; null if the library has the hidden effect [sigma]",
     ]
     faint: Annotated[bool, "whether the effect is too small to be seen"]
     visible: Annotated[bool, "whether the data show it"]
     baseline: Annotated[bool, "whether there is a baseline"]
     calibrated: Annotated[bool, "whether the FRFs have an absolute level"]
     gap_percent: Annotated[float, "r.m.s. frequency gap [%]"]
-    verdict: Annotated[str, "of the diagnosis, or `failed`"]
+    verdict: Annotated[str, "verdict of the diagnosis, or `failed`"]
     answered: Annotated[str, "the answer in words"]
     sets: Annotated[int, "sets in the answer [-]"]
-    right: Annotated[bool, "whether it is true up to the class"]
-    top: Annotated[bool, "whether the most probable answer is"]
+    right: Annotated[bool, "whether the answer is right, as a class at least"]
+    top: Annotated[bool, "whether the most probable answer is right"]
     holds: Annotated[bool, "whether the answer holds the truth"]
-    commits: Annotated[bool, "whether it is one answer"]
-    credit: Annotated[float, "a class by its share [-]"]
+    commits: Annotated[bool, "whether the answer is a single one"]
+    credit: Annotated[float, "1 for a right answer, its share for a class [-]"]
     confidence: Annotated[float, "probability of the first set [-]"]
     first: Annotated[bool, "whether that set is the truth"]
     probability: Annotated[Maybe, "probability of the truth; null where the diagnosis failed [-]"]
-    p_value: Annotated[Maybe, "of the gap; null likewise [-]"]
+    p_value: Annotated[Maybe, "p-value of the gap; null likewise [-]"]
     fit: Annotated[Maybe, "p-value of the first row; null without rows [-]"]
     failure: Annotated[str, "message of a diagnosis that failed"]
     brier: Annotated[Maybe, "Brier score; null where the library cannot answer [-]"]
@@ -170,7 +173,7 @@ class BlindDocument(TypedDict):
     schema: Annotated[Literal["modalkit.blind/2"], "kind and version of the document"]
     seed: Annotated[int, "seed of the run [-]"]
     plan: Annotated[DrawnFrom, "what could be drawn"]
-    rates: Annotated[Sequence[RateEntry], "every question, of every group of trials"]
+    rates: Annotated[Sequence[RateEntry], "every question, for every group of trials"]
     severity: Annotated[Sequence[Severity], "errors of parameters, trial by trial"]
     points: Annotated[Sequence[Points], "hidden test points"]
     places: Annotated[Sequence[PlaceError], "errors of place, trial by trial"]

@@ -32,7 +32,9 @@ class GapEntry(TypedDict):
     """The gap before anything is explained."""
 
     frequency_rms_percent: Annotated[float, "r.m.s. frequency error over the pairs [%]", Of("rms_percent")]
-    noise_floor_percent: Annotated[float, "what repeating the test alone would give [%]", Of("floor_percent")]
+    noise_floor_percent: Annotated[
+        float, "error from the repeatability of the test alone [%]", Of("floor_percent")
+    ]
     modes: Annotated[Sequence[GapMode], "mode by mode"]
     frac: Annotated[
         Sequence[float | None],
@@ -90,16 +92,16 @@ class RankedEntry(TypedDict):
 
     effects: Annotated[
         Sequence[str],
-        "the set; one that occurs twice is listed twice; `something_else` is a cause in no library",
+        "the set; an effect that occurs twice is listed twice; `something_else` is a cause outside the library",
     ]
     probability: Annotated[
-        float, "of this set, among all compared, no effect at all, and a cause in no library [-]"
+        float, "of this set, among all sets compared, no effect at all, and a cause outside the library [-]"
     ]
     equivalents: Annotated[Sequence[Sequence[str]], "other rows that fit less than 2 sigma worse or better"]
     parameters: Annotated[
         Mapping[str, EstimateEntry],
-        "by `effect.parameter`, of a second one `effect#2.parameter`; nodes and sensors only in the rows of `sets`;"
-        " a place that is an end or a test point stands in `where.location` alone",
+        "by `effect.parameter`, for a second such effect `effect#2.parameter`; nodes and sensors only in rows of `sets`;"
+        " a place that is an end or a test point is in `where.location` only",
     ]
     plausible: Annotated[bool, "whether the sizes are believable for such a specimen"]
     fit_p_value: Annotated[
@@ -107,17 +109,19 @@ class RankedEntry(TypedDict):
         "chance of a misfit like this or worse if the set is true; null of `something_else` [-]",
         Of("p_value"),
     ]
-    set_aside: Annotated[Sequence[str], "data that it takes to be worse than stated"]
+    set_aside: Annotated[Sequence[str], "data that are treated as worse than stated"]
 
 
 class SetAsideEntry(TypedDict):
     """No cause, but data that are worse than stated."""
 
     data: Annotated[Sequence[str], "which, most probably"]
-    probability: Annotated[float, "of no cause with data set aside, these or others [-]"]
+    probability: Annotated[
+        float, "that there is no cause and some data, these or others, are worse than stated [-]"
+    ]
     fit_p_value: Annotated[
         float | None,
-        "chance of a misfit like that of all other data or worse; null if undefined [-]",
+        "chance of a misfit of all other data like this or worse; null if undefined [-]",
         Of("p_value"),
     ]
 
@@ -138,7 +142,7 @@ class MechanismSizeEntry(TypedDict):
 class AlikeEntry(TypedDict):
     """A set of effects that has a mechanism."""
 
-    effects: Annotated[Sequence[str], "the set; `something_else` is a cause in no library"]
+    effects: Annotated[Sequence[str], "the set; `something_else` is a cause outside the library"]
     probability: Annotated[float, "its probability, given that there is a cause [-]"]
 
 
@@ -179,16 +183,16 @@ class CauseEntry(TypedDict):
     ]
     level: Annotated[
         Literal["story", "mechanism"] | None,
-        "what is certain: one set is named (`story`); the set is not, what 95 % of the probability do alike is"
+        "what is certain: the set itself (`story`), or only the mechanism that sets with 95 % of the probability share"
         " (`mechanism`); null for neither",
     ]
     mechanism: Annotated[
         MechanismEntry | None,
-        "the leading one of `mechanisms`; null for `none`, and for `unknown` where no cause in no library leads",
+        "the leading one of `mechanisms`; null for `none`, and for `unknown` unless a cause outside the library leads",
     ]
     mechanisms: Annotated[
         Sequence[MechanismEntry],
-        "what the first set, for `unknown` a cause in no library, does: one for each effect, at the same time",
+        "mechanisms of the first set (for `unknown`, of a cause outside the library), one per effect; all act at once",
     ]
     effects: Annotated[Sequence[str], "union of `sets`"]
     sets: Annotated[
@@ -197,7 +201,7 @@ class CauseEntry(TypedDict):
     ranking: Annotated[Sequence[RankedEntry], "all sets compared, most probable first"]
     set_aside: Annotated[
         SetAsideEntry | None,
-        "data that are worse than stated if there is no cause; null where none are taken to be",
+        "data that must be worse than stated if there is no cause; null for none",
     ]
 
 
@@ -221,13 +225,13 @@ class HeldOut(TypedDict):
         float | None, "with the first row of the ranking; null likewise [%]", Of("held_after")
     ]
     runner_up_percent: Annotated[
-        float | None, "with the row behind it; null where there is none [%]", Of("held_runner_up")
+        float | None, "with the second row of the ranking; null where there is none [%]", Of("held_runner_up")
     ]
     nuisance_only_percent: Annotated[
         float | None, "with the tolerances alone; null with one mode only [%]", Of("held_nuisance")
     ]
     noise_floor_percent: Annotated[
-        float | None, "what repeating the test alone would give; null if undefined [%]", Of("floor")
+        float | None, "error from the repeatability of the test alone; null if undefined [%]", Of("floor")
     ]
     nuisance_stretch_sigma: Annotated[
         float | None,
@@ -252,7 +256,7 @@ class ShrinkEntry(TypedDict):
 
     metric: Annotated[
         Literal["frequency", "damping", "frf", "combined"],
-        "what the errors are of: what carries the gap; of `combined` 100 % is one standard deviation",
+        "data in which the gap shows, of which errors are given; for `combined`, 100 % is one standard deviation",
     ]
     before_percent: Annotated[float, "r.m.s. error of the nominal model [%]", Of("before")]
     after_percent: Annotated[float, "once the first row is fitted [%]", Of("after")]
@@ -267,7 +271,7 @@ class ShrinkEntry(TypedDict):
 class RemainderEntry(TypedDict):
     """What the first row leaves."""
 
-    significant: Annotated[bool, "whether it is more than the stated noise makes"]
+    significant: Annotated[bool, "whether it exceeds the stated noise"]
     percent: Annotated[float, "r.m.s. left beyond noise, in `shrink.metric` [%]"]
     sigma: Annotated[float, "largest residual of a mode or a channel [sigma]"]
     carried_by: Annotated[Sequence[str], "which data carry it: `mode 11 frequency`"]
@@ -286,7 +290,7 @@ class NextTestEntry(TypedDict):
 class RegionalChangeEntry(TypedDict):
     """What a cause that is in no library would change in one region."""
 
-    region: Annotated[str, "its name; empty for what is in no region"]
+    region: Annotated[str, "its name; empty for parts outside all regions"]
     property: Annotated[Literal["stiffness", "mass"], "what is changed"]
     percent: Annotated[float, "by how much, the most probable value [%]"]
     low95: Annotated[float, "lower end of the 95 % interval [%]"]
@@ -296,15 +300,15 @@ class RegionalChangeEntry(TypedDict):
 class SomethingElseEntry(TypedDict):
     """A cause that is in no library: fields of stiffness and mass, of damping and of gains."""
 
-    probability: Annotated[float, "that it is the cause and no set is, given that there is one [-]"]
+    probability: Annotated[float, "that the cause is outside the library, given that there is a cause [-]"]
     log_bayes_factor: Annotated[
-        float, "of such a cause beside the first row; above 0 something is left [-]", Of("beside")
+        float, "for such a cause in addition to the first row; above 0 is evidence for one [-]", Of("beside")
     ]
     channels: Annotated[
         Mapping[str, float], "probability that it changes each channel, where it is the cause [-]"
     ]
     changes: Annotated[
-        Sequence[RegionalChangeEntry], "what it would change of the structure, what is surest first"
+        Sequence[RegionalChangeEntry], "changes of the structure that it would make, the most certain first"
     ]
 
 
@@ -312,8 +316,8 @@ class SearchedEntry(TypedDict):
     """How much of what there is was searched."""
 
     causes: Annotated[int, "causes in a set [-]"]
-    sets: Annotated[int, "how many sets were searched: those that score tests found the most promising [-]"]
-    possible: Annotated[int, "how many there are [-]"]
+    sets: Annotated[int, "number of sets searched, the most promising ones by score tests [-]"]
+    possible: Annotated[int, "number of sets possible [-]"]
 
 
 class DiagnosisDocument(TypedDict):
@@ -330,7 +334,7 @@ class DiagnosisDocument(TypedDict):
     remainder: Annotated[RemainderEntry | None, "what the first row leaves beyond noise; null without gap"]
     something_else: Annotated[
         SomethingElseEntry | None,
-        "a cause that is in no library; null without gap, or where it was not examined",
+        "a cause outside the library; null without gap, or where it was not examined",
     ]
     included: Annotated[Mapping[str, float], "probability of each effect that it is among the causes [-]"]
     next_test: Annotated[Sequence[NextTestEntry], "what to measure next, best first"]

@@ -20,9 +20,9 @@ class MethodEntry(TypedDict):
 
     method: Annotated[str, "its name, as `--method` takes it"]
     scores: Annotated[
-        Sequence[float], "the greater the more suspect; of `evidence` the region's probability [-]"
+        Sequence[float], "score of each region, higher is more suspect; for `evidence` its probability [-]"
     ]
-    ranks: Annotated[Sequence[float], "rank of each region from 1, the mean rank of equals [-]"]
+    ranks: Annotated[Sequence[float], "rank of each region from 1; equal scores share their mean rank [-]"]
     summary: Annotated[str, "what it compares"]
     needs: Annotated[str, "the data that it needs"]
     misleads: Annotated[str, "when its first region is the wrong one"]
@@ -33,7 +33,7 @@ class AgreementEntry(TypedDict):
     """How far the methods agree."""
 
     region: Annotated[str, "region that most methods put first"]
-    methods: Annotated[int, "how many do [-]"]
+    methods: Annotated[int, "number of these methods [-]"]
     kendall_w: Annotated[
         float | None,
         "Kendall's coefficient of concordance of their ranks, 1 where all are alike; null with one method [-]",
@@ -45,10 +45,10 @@ class LocalisationDocument(TypedDict):
 
     schema: Annotated[Literal["modalkit.localisation/1"], "kind and version of the document"]
     study: Annotated[str, "title of the study", Of("title")]
-    kind: Annotated[str, "what of a region may be wrong: `stiffness`, `mass` or `damping`"]
+    kind: Annotated[str, "property of a region that may be wrong: `stiffness`, `mass` or `damping`"]
     regions: Annotated[Sequence[LocalisedRegion], "regions in the order of the model"]
-    methods: Annotated[Sequence[MethodEntry], "those used, the most often right first"]
-    not_used: Annotated[Mapping[str, str], "method to why it cannot be used"]
+    methods: Annotated[Sequence[MethodEntry], "methods used, the most reliable first"]
+    not_used: Annotated[Mapping[str, str], "methods that cannot be used, with the reason"]
     agreement: Annotated[AgreementEntry, "how far the methods agree"]
     unchanged: Annotated[
         float | None, "probability that no region is changed, by `evidence`; null without it [-]"

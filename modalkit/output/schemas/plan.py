@@ -16,20 +16,22 @@ class ForecastEntry(TypedDict):
     at: Annotated[str | None, "its place in the names of your own model; null where it has none"]
     outcome: Annotated[
         Literal["named", "place", "edge", "class", "unseen"],
-        "what a diagnosis is expected to say: named, its place in doubt, at the edge, in a class, not seen",
+        "expected answer: named, named with its place in doubt, at the edge, in a class, or not seen",
         Of("kind"),
     ]
     not_told_from: Annotated[
-        Sequence[str], "rivals it is not separated from, or hardly, nearest first", Of("rivals")
+        Sequence[str], "rivals from which it is not or hardly separated, nearest first", Of("rivals")
     ]
-    seen_from: Annotated[str | None, "in words: from what size on it is seen; null for never"]
-    separated_from: Annotated[str | None, "in words: separated from all others by 3 sigma; null for never"]
-    sure_from: Annotated[str | None, "in words: by 5 sigma; null for never"]
+    seen_from: Annotated[str | None, "in words: size from which it is seen; null for never"]
+    separated_from: Annotated[
+        str | None, "in words: size from which it is separated from all others by 3 sigma; null for never"
+    ]
+    sure_from: Annotated[str | None, "in words: size from which it is separated by 5 sigma; null for never"]
     sure: Annotated[float | None, "that size; null for never [SI]"]
     seen: Annotated[float | None, "size from which it is seen; null for never [SI]"]
     separated: Annotated[float | None, "size from which it is separated; null for never [SI]"]
     asked: Annotated[str | None, "in words: the size that is asked about; null for none"]
-    nearest: Annotated[str, "the rival that can do most of what it does"]
+    nearest: Annotated[str, "the rival with the most similar effect"]
     nearest_sigma: Annotated[float | None, "distance to that one; null if undefined [sigma]", Of("sigma")]
     sigma: Annotated[
         Mapping[str, float | None], "distance to each rival and to `none`; null from itself [sigma]"
@@ -50,8 +52,8 @@ class AdviceEntry(TypedDict):
 
     change: Annotated[str, "short name"]
     measure: Annotated[str, "what to do"]
-    worth: Annotated[float, "what it is ranked by; 0 for nothing gained [-]"]
-    threshold_factor: Annotated[float, "how many times smaller sizes are then separated [-]", Of("factor")]
+    worth: Annotated[float, "gain, by which changes are ranked; 0 for none [-]"]
+    threshold_factor: Annotated[float, "factor by which separable sizes become smaller [-]", Of("factor")]
     separates: Annotated[Sequence[Sequence[str]], "pairs of effects that it newly separates"]
     then: Annotated[DesignEntry, "the forecast with the change"]
 

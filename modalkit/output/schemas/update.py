@@ -34,12 +34,12 @@ class UpdatedPair(TypedDict):
     test_mode: Annotated[int, "number among the measured modes, from 1 [-]"]
     model_mode: Annotated[int, "number among those of the model, from 1 [-]"]
     mac: Annotated[float | None, "MAC after the update; null without shapes [-]"]
-    test_hz: Annotated[float | None, "measured frequency; null never in practice [Hz]"]
+    test_hz: Annotated[float | None, "measured frequency; never null in practice [Hz]"]
     before_hz: Annotated[float | None, "the model's before; null if it could not be solved [Hz]"]
     after_hz: Annotated[float | None, "the model's after; null if it could not be solved [Hz]"]
-    used: Annotated[bool, "whether the mode weighs anything in the update"]
+    used: Annotated[bool, "whether the mode has a weight in the update"]
     shape_sigma: Annotated[
-        float | None, "error the shape is taken to have, over its r.m.s.; null where shapes are no data [-]"
+        float | None, "assumed error of the shape, over its r.m.s.; null where shapes are not data [-]"
     ]
 
 
@@ -53,7 +53,7 @@ class RmsChange(TypedDict):
 class Statistics(TypedDict):
     """How the fit went."""
 
-    data: Annotated[int, "number of data that weigh anything [-]"]
+    data: Annotated[int, "number of data that have a weight [-]"]
     chi2: Annotated[float | None, "misfit in variances of data and tolerances; null if it is not finite [-]"]
     dof: Annotated[int, "data less parameters; 0 or less: the fit tests nothing [-]"]
     reduced_chi2: Annotated[float | None, "`chi2 / dof`; null without a degree of freedom [-]"]
@@ -76,11 +76,11 @@ class DeterminabilityEntry(TypedDict):
 
     singular_values: Annotated[
         Sequence[float | None],
-        "by how many times the data narrow each direction of the parameters; null if not finite [-]",
+        "factor by which the data narrow each direction of the parameters; null if not finite [-]",
     ]
     alone: Annotated[
         Sequence[float | None],
-        "standard deviation from the data alone over the doubt before, by parameter; null for infinite [-]",
+        "standard deviation from the data alone, over that before the update, by parameter; null for infinite [-]",
     ]
     couplings: Annotated[Sequence[CoupledParameters], "groups that the data do not separate"]
     subset: Annotated[Sequence[str], "parameters in the order in which they explain the residual"]
@@ -108,7 +108,9 @@ class ByFrfs(TypedDict):
     damping: Annotated[Sequence[DampingPair], "damping ratios, one row for each of `pairs`", Of("pairs")]
     iterations_by_stage: Annotated[Sequence[int], "iterations of each stage [-]", Of("stages")]
     lines_hz: Annotated[Sequence[Sequence[float]], "frequencies compared, by stage [Hz]", Of("lines")]
-    discrepancy: Annotated[Sequence[float], "what the model cannot follow, relative to the FRFs, r.m.s. [-]"]
+    discrepancy: Annotated[
+        Sequence[float], "error of the model that no parameter removes, relative to the FRFs, r.m.s. [-]"
+    ]
 
 
 class UpdateDocument(TypedDict):
@@ -122,10 +124,10 @@ class UpdateDocument(TypedDict):
     ]
     held: Annotated[
         Sequence[str],
-        "parameters that their tolerances keep from where the data would take them; `sigma` is then the tolerance's",
+        "parameters that their tolerances hold against the data; `sigma` is then that of the tolerance",
     ]
     iterations: Annotated[int, "number of steps [-]"]
-    converged: Annotated[bool, "whether the steps died out"]
+    converged: Annotated[bool, "whether the steps converged to zero"]
     correlations: Annotated[
         Sequence[Sequence[float | None]], "of the parameters, in their order; null if undefined [-]"
     ]
