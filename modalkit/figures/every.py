@@ -97,7 +97,7 @@ def _of_correlation(found: Correlation) -> dict[str, Figure]:
     rows, columns = (
         [f"{i + 1}: {hertz(f)}" for i, f in enumerate(m.frequency)] for m in (found.test, found.model)
     )
-    title = f"{len(found.pairs)} of {len(rows)} and {len(columns)} modes belong together"
+    title = f"{len(found.pairs)} pairs among {len(rows)} and {len(columns)} modes"
     note = f"MAC, shapes at {len(found.dofs)} degrees of freedom in common"
     return {
         "mac": mac_figure(
@@ -108,7 +108,7 @@ def _of_correlation(found: Correlation) -> dict[str, Figure]:
 
 def _of_localisation(found: Localisation) -> dict[str, Figure]:
     scores = np.stack([one.scores / one.scores.max() for one in found.found], axis=1)
-    note = f"{found.kind} of each region: score, % of the largest of the method"
+    note = f"{found.kind} of each region: score, % of the largest score of the method"
     if found.spread:
         note += f"  ·  {found.spread}"
     return {

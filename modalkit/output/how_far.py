@@ -32,8 +32,8 @@ def closes(diagnosis: Diagnosis) -> str:
     text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
     if not math.isfinite(shrink.held_after):
         return (
-            f"{text} (noise floor {say(shrink.floor)}); with a single mode none can be held out, so "
-            "this proves nothing"
+            f"{text} (noise floor {say(shrink.floor)}); with a single mode, none can be held out to "
+            "check this"
         )
     text += f", {say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
     others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
@@ -72,7 +72,7 @@ def _left(diagnosis: Diagnosis) -> str:
     if left is None or not left.significant or diagnosis.verdict in ("unknown", "none"):
         return ""
     where = ", ".join(left.carried_by[:SHOWN]) or "all data together"
-    return f"; it leaves more than noise, {left.sigma:.0f} sigma ({where}), unexplained"
+    return f"; the remainder exceeds the noise: {left.sigma:.0f} sigma ({where})"
 
 
 def _stretched(shrink: Shrink) -> str:

@@ -29,7 +29,7 @@ def shared_text(diagnosis: Diagnosis) -> str:
 def _set(diagnosis: Diagnosis, one: Alike) -> str:
     """Name a set; of one effect that reaches over a stretch, with the length of that."""
     if one.effects == (SOMETHING_ELSE,):
-        return "a cause in no library"
+        return "a cause outside the library"
     row: Ranked | None = next((row for row in diagnosis.ranking if row.effects == one.effects), None)
     long = None if row is None or len(one.effects) > 1 else row.parameters.get(f"{one.effects[0]}.extent")
     stretch = f" of {quantity(long.value, long.unit)}" if long and isinstance(long.value, float) else ""

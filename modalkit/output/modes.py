@@ -33,7 +33,7 @@ def modes_kind(path: Path | None) -> Kind:
     ending = path.suffix.lower()
     if ending not in ENDINGS:
         raise InputError(
-            f"{path}: modes are written by their ending, {', '.join(ENDINGS)}; name another file, as "
+            f"{path}: the ending states the format, {', '.join(ENDINGS)}; name another file, as "
             f"{path.stem}_modes.uff"
         )
     if ending == ".csv":
@@ -81,7 +81,7 @@ def write_modes(
     check_output(path, modes_kind(path))
     if path.suffix.lower() in UFF and modes.modal.shapes is None:
         raise InputError(
-            f"{path}: a data set of modes needs their shapes, which these have not; write them as .csv or .json"
+            f"{path}: a data set of modes needs shapes, but these modes have none; write them as .csv or .json"
         )
     statement = modes.warnings if warnings is None else warnings
     ending = path.suffix.lower()

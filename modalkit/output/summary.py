@@ -53,11 +53,11 @@ def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and (odd := deviating(diagnosis)):
         return f"no gap beyond tolerances and noise, once isolated deviations are left out: {odd}"
     if diagnosis.verdict == "none":
-        sure = "" if diagnosis.suspected is None else "that is sure to be "
+        sure = "" if diagnosis.suspected is None else "certain "
         if not diagnosis.comparable:
             return "no gap beyond tolerances and noise in the modes that have a partner; most have none"
         allowed = f"tolerances and noise{beneath(diagnosis)}"
-        return f"no gap {sure}beyond {allowed}; {_suspected(diagnosis.suspected)}"
+        return f"no {sure}gap beyond {allowed}; {_suspected(diagnosis.suspected)}"
     if diagnosis.verdict == "unknown":
         return f"unknown: {_unknown(diagnosis)}"
     if diagnosis.verdict == "named":
@@ -125,9 +125,9 @@ def _unknown(diagnosis: Diagnosis) -> str:
 def _of_no_library(other: SomethingElse | None) -> str:
     """State how likely a cause is that no library has, and what it would change."""
     if other is None:
-        return "a cause that is not in the library is as likely"
+        return "a cause outside the library is as likely"
     would = f": {', '.join(map(str, other.changes[:3]))}" if other.changes else ""
-    return f"a cause that is not in the library has a probability of {probability(other.probability)}{would}"
+    return f"a cause outside the library has a probability of {probability(other.probability)}{would}"
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
@@ -176,7 +176,7 @@ def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
     """Return a set of effects, with where each is by name, and its size where it is one number."""
     row = _row(diagnosis, names)
     if names == (SOMETHING_ELSE,) and diagnosis.something_else is not None:
-        return f"a cause in no library ({probability(diagnosis.something_else.probability)})"
+        return f"a cause outside the library ({probability(diagnosis.something_else.probability)})"
     if row is None:
         return " + ".join(names)
     statement = " + ".join(name + _at(row, i) for i, name in enumerate(names))
@@ -352,7 +352,7 @@ def separates(test: NextTest) -> str:
     firsts = list(dict.fromkeys(a for a, _ in test.pairs))
     seconds = list(dict.fromkeys(b for _, b in test.pairs))
     if test.whole and len(firsts) > 1:
-        return "all that is left"
+        return "all remaining causes"
     common = [s for s in firsts + seconds if all(s in pair for pair in test.pairs)]
     if common:
         others = list(dict.fromkeys(b if a == common[0] else a for a, b in test.pairs))
@@ -360,7 +360,7 @@ def separates(test: NextTest) -> str:
     every = list(dict.fromkeys(firsts + seconds))
     lacking = [(a, b) for a, b in combinations(every, 2) if not {(a, b), (b, a)} & set(test.pairs)]
     if len(lacking) < len(test.pairs):
-        return f"all but {' and '.join(_from(pair) for pair in lacking)}"
+        return f"all pairs except {' and '.join(_from(pair) for pair in lacking)}"
     return "; ".join(_from(pair) for pair in test.pairs)
 
 

@@ -156,7 +156,7 @@ def _pairs(score: Score) -> Section:
         for question in rates.pair_questions(score.trials)
         if (row := score.rates[question, ALL]).count
     ]
-    return Section("Pairs", "visible pairs; one of the two alone is no right answer", _words(rows))
+    return Section("Pairs", "visible pairs; one of the two alone is not a right answer", _words(rows))
 
 
 def _unknowable(score: Score) -> Section:

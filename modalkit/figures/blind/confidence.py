@@ -83,7 +83,7 @@ def abstention_figure(score: Score) -> Figure:
     note = (
         f"Rule: one set holds 95 %, or none; {known.right.count} of {known.right.total} right, of "
         f"{known.answered.total} trials. Along "
-        "the curve the probability falls from which one answers; bands are 95 % intervals."
+        "the curve the least probability for an answer falls; bands are 95 % intervals."
     )
     top = caption_height(title, note) + 0.4
     figure = new_figure(top + SIDE + 0.7)

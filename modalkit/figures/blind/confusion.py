@@ -89,9 +89,8 @@ def confusion_figure(answers: pd.DataFrame) -> Figure:
     right, total = answers.loc[answers["true"].astype(bool), "share"].sum(), answers["share"].sum()
     title = f"{right:.0f} of {total:.0f} blind trials answered correctly, a class counted by its share"
     note = (
-        "A row is what was hidden, a column what was answered; dark is most of the row, green frames are true answers. "
-        "A class gives each of its sets an equal part of the trial. Faint effects are among them: there, none is the "
-        "best answer."
+        "Rows: hidden effects; columns: answers. Dark: most of the row; green frames: right answers. A class divides "
+        "its trial equally among its sets. Faint effects are included; for these, none is the best answer."
     )
     top = caption_height(title, note) + 0.12
     columns = [_plain(name) for name in counts.columns]

@@ -104,7 +104,7 @@ def _upper(figure: Figure, diagnosis: Diagnosis, case: Case | None, errors: Mode
 
 
 def _lower(figure: Figure, diagnosis: Diagnosis, rows: _Rows) -> None:
-    heading(figure, MARGIN, rows.lower - 0.12, "Whether it holds on modes left out of the fit")
+    heading(figure, MARGIN, rows.lower - 0.12, "Whether it predicts modes left out of the fit")
     draw_chart(
         figure,
         closing_chart(diagnosis),
@@ -131,7 +131,7 @@ def _advice(diagnosis: Diagnosis, most: int) -> list[tuple[str, bool]]:
         nothing = {
             "none": "Nothing: there is no gap.",
             "named": "Nothing: no rival is left to separate.",
-        }.get(diagnosis.verdict, "No measurement in the library would separate what is left.")
+        }.get(diagnosis.verdict, "No measurement in the library would separate the remaining causes.")
         return [(line, True) for line in broken(nothing, 72 * RIGHT[1], TEXT)]
     lines: list[tuple[str, bool]] = []
     for measure in dict.fromkeys(test.measure for test in diagnosis.next_test):

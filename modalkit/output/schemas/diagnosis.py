@@ -100,7 +100,7 @@ class RankedEntry(TypedDict):
     equivalents: Annotated[Sequence[Sequence[str]], "other rows that fit less than 2 sigma worse or better"]
     parameters: Annotated[
         Mapping[str, EstimateEntry],
-        "by `effect.parameter`, for a second such effect `effect#2.parameter`; nodes and sensors only in rows of `sets`;"
+        "by `effect.parameter`, a second such effect as `effect#2.parameter`; nodes and sensors only in rows of `sets`;"
         " a place that is an end or a test point is in `where.location` only",
     ]
     plausible: Annotated[bool, "whether the sizes are believable for such a specimen"]

@@ -106,8 +106,8 @@ MAC_NOTE = (
 WET_MAC_NOTE = (
     "The printed MAC falls to 54-78 % in the real tank, from what a synthetic test cannot have: "
     "shapes spoilt by the extended hammer tip, by noise and by water that moves. Ours includes only "
-    "the effects of its own structure (the accelerometer, the water's mass) plus small noise, so "
-    "where it is higher, that is no better result, and where it is near, no confirmation."
+    "the effects of its own structure (the accelerometer, the water's mass) plus small noise: a "
+    "higher value is not a better result, and a similar value is not a confirmation."
 )
 
 TABLES: tuple[PrintedTable, ...] = (

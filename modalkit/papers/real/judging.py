@@ -10,14 +10,14 @@ from modalkit.output.schemas.diagnosis import SOMETHING_ELSE
 from modalkit.papers.real.case import Case, Fact
 
 RULES = """\
-* right: it names a set of effects that is true; or a class that holds a true set and else only sets that
-  these data cannot separate from it; that a cause in no library is possible, too, counts neither way;
-* partly: it answers `unknown` where the library has the effect; or names a part of the truth only (not a
-  factor that stands beside it); or holds a true set beside a false one; or is right but for a known number
-  outside its 95 % interval or a place it does not point to;
+* right: it names a set of effects that is true, or a class that holds a true set and otherwise only sets
+  that these data cannot separate from it; a cause outside the library in the class does not count;
+* partly: it answers `unknown` where the library has the effect; or names only a part of the truth (not a
+  factor that stands beside it); or holds a true set beside a false one; or is right except for a known
+  number outside its 95 % interval, or for the place;
 * wrong: it names something else, answers `none` where something is, or anything but `none` where nothing is;
 * with the effect left out of the library: `unknown` is right, and so is the same effect under another
-  name; such a stand-in beside others, or with something added to it, is partly right; all else is wrong.
+  name; the latter beside others, or with something added, is partly right; anything else is wrong.
 """
 
 

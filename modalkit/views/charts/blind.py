@@ -46,7 +46,7 @@ def rates_sheet(score: Score) -> Sheet:
     """
     asked = headline(score.rates)
     if not asked:
-        raise InputError("the blind run asks nothing that can be drawn; run more trials")
+        raise InputError("the blind run has no rates to draw; run more trials")
     name, first = next(iter(asked.items()))
     charts = [_rates("rates", "Over all trials", list(asked), list(asked.values()), {"": ("", "blue")}, {})]
     if some := _by_effect(score):
@@ -55,9 +55,9 @@ def rates_sheet(score: Score) -> Sheet:
         charts.append(_rates("effects", "Effect by effect", names, [row for *_, row in some], SORTS, sorts))
     return Sheet(
         f"{name[0].upper()}{name[1:]} in {_count(first)} blind trials",
-        "Bars are 95 % intervals. Effects fainter than three standard deviations are not asked for. "
-        "Effect by effect, an answer is right that names it, holds it in a class, or is unknown where it "
-        "cannot be known.",
+        "Bars are 95 % intervals. Effects fainter than three standard deviations are left out. Effect by "
+        "effect, an answer is right if it names the effect, gives a class that holds it, or is unknown where "
+        "the library lacks the effect.",
         charts,
     )
 
@@ -144,8 +144,8 @@ def reliability_sheet(score: Score) -> Sheet:
     )  # fmt: skip
     return Sheet(
         _calibrated(score.rates.of(ERROR)),
-        "Left: effects of the library that the data show, and none. Right: the worse the best row fits, the more "
-        "unknown.",
+        "Left: effects of the library that the data show, and none. Right: an effect counts as unknown if the best "
+        "row fits badly; along the curve the limit moves.",
         [reliability, detected],
     )
 
@@ -153,9 +153,9 @@ def reliability_sheet(score: Score) -> Sheet:
 def _calibrated(errors: Sequence[Rate]) -> str:
     row = next((row for row in errors if row.total), None)
     if row is None:
-        return "Probabilities against what came true"
+        return "Stated probabilities and how often they came true"
     value, low, high = (f"{100 * x:.1f}" for x in (row.rate, row.low, row.high))
-    return f"Probabilities are off by {value} points of % in the mean ({low} to {high})"
+    return f"Probabilities are off by {value} percentage points on average ({low} to {high})"
 
 
 def _even(low: float = 0.0) -> Series:
@@ -192,7 +192,7 @@ def closing_sheet(closing: pd.DataFrame, places: pd.DataFrame) -> Sheet:
     title = "How far the gap closes was not stated"
     if len(stated):
         distance = (stated["said"] - stated["true"]).abs()
-        title = f"Stated and true shrinkage differ by {distance.mean():.1f} points of % in the mean"
+        title = f"Stated and true shrinkage differ by {distance.mean():.1f} percentage points on average"
     return Sheet(
         title,
         "Left: share of the gap that closes; true: with the answer in the rig's own nominal body. Right: errors of "

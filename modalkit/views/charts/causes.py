@@ -101,7 +101,7 @@ def _title(diagnosis: Diagnosis) -> str:
         alone = without_cause(diagnosis)
         return f"Tolerances and noise alone hold {probability(alone)} of the probability"
     if diagnosis.verdict == "unknown" or not chosen:
-        return f"No explanation of {len(diagnosis.ranking)} that were compared is the answer"
+        return f"None of the {len(diagnosis.ranking)} explanations compared is the answer"
     total = probability(sum(r.probability for r in chosen))
     if len(chosen) == 1:
         name = short(chosen[0].effects)

@@ -88,9 +88,7 @@ def damping_chart(
     if expected is not None:
         series.insert(0, _expected(expected))
         title += f"; the model expects {_span(100 * expected.ratio)}"
-        note += (
-            " Rings: what the model expects of the modes that have a partner in it, at its own frequencies."
-        )
+        note += " Rings: damping that the model expects for paired modes, at the frequencies of the model."
     return Chart(
         name, title, note, Axis("frequency [Hz]", zero=True), Axis("damping ratio [%]", zero=True), series, 260.0
     )  # fmt: skip

@@ -67,7 +67,7 @@ def overlaid_chart(both: Overlaid, name: str = "frfs", *, tests: int = 1) -> Cha
         (f"{names[i]}, FRAC {shown.frac[i]:.3f}", [magnitude(curve, keep) for curve in _curves(both, i)])
         for i in np.argsort(shown.frac, kind="stable")[:count].tolist()
     ]
-    left = f" Of {len(names)} FRFs the {count} worst are here." if count < len(names) else ""
+    left = f" The {count} worst of {len(names)} FRFs are shown." if count < len(names) else ""
     return Chart(
         name,
         overlaid_title(both),
@@ -91,7 +91,7 @@ def _curves(both: Overlaid, row: int, *, scored: bool = False) -> list[Curve]:
 
 
 def _damping(both: Overlaid) -> str:
-    level = " The level of the test is not known; the models are drawn to fit it." if both.levelled else ""
+    level = " The test has no absolute level; the models are scaled to fit it." if both.levelled else ""
     return f"Damping of the model: {both.before.damping}.{level}"
 
 

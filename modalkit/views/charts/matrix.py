@@ -87,5 +87,5 @@ def alike(matrix: FloatArray) -> str:
     if apart[i, j] < 0.1:
         return "All modes are distinct"
     if apart[i, j] < CONFUSED:
-        return f"All modes differ; {first} and {second} are the most alike, by {100 * apart[i, j]:.0f} %"
-    return f"Modes {first} and {second} look alike by {100 * apart[i, j]:.0f} %"
+        return f"All modes differ; {first} and {second} are the most similar ({100 * apart[i, j]:.0f} %)"
+    return f"Modes {first} and {second} are similar ({100 * apart[i, j]:.0f} %)"

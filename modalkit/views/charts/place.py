@@ -122,7 +122,7 @@ def _text(diagnosis: Diagnosis, body: Outline) -> str:
         f", {body.width:.4g} m wide" if body.width else "; drawn thicker than it is"
     )
     if diagnosis.verdict == "none":
-        return f"The structure with its test points, {size}. Nothing is to be placed."
+        return f"The structure with its test points, {size}. There is no cause to locate."
     by = (
         "if that zone alone were changed: a hint at most"
         if diagnosis.where.zones_by == "regions"

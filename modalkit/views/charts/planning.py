@@ -37,8 +37,8 @@ def separations_chart(found: Forecast, *, most: int | None = None) -> Chart:
         least = min(pairs, key=lambda pair: pairs[pair])
         title += f"; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
     text = (
-        "Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can "
-        f"do of it; full colour from {SURE:g}σ on."
+        "Separation of each effect (row), at the severity asked about, from the nearest case of another (column), in "
+        f"standard deviations; full colour from {SURE:g}σ."
     )
     return matrix_chart(
         "separations", title, text, np.minimum(sigma / SURE, 1.0), names, columns,
@@ -64,7 +64,7 @@ def thresholds_chart(found: Forecast) -> Chart:
         (("seen from", "ink", True), ("separated from all others", "blue", False))
     ):
         known = [n for n in names if math.isfinite(shares[n][k]) and shares[n][k] > 0]
-        text = [f"{n}\n{meaning} {100 * shares[n][k]:.3g} % of what is asked about" for n in known]
+        text = [f"{n}\n{meaning} {100 * shares[n][k]:.3g} % of the severity asked about" for n in known]
         more = {"text": text, "hollow": hollow, "size": 4.5}
         at = [100 * shares[n][k] for n in known]
         series.append(Series(meaning, "points", at, [rows[n] for n in known], colour, more))
@@ -75,11 +75,11 @@ def thresholds_chart(found: Forecast) -> Chart:
     early = sum(shares[n][1] <= 1 for n in names)
     return Chart(
         "thresholds",
-        f"{early} of {len(names)} effects are separated from all others as strong as asked about, "
+        f"{early} of {len(names)} effects are separated from all others at the severity asked about, "
         f"{never or 'none'} never",
-        "Ring: seen; dot: separated from all others; dotted: as strong as asked about, which stands on the right."
+        "Ring: seen; dot: separated from all others; dotted line: severity asked about, given on the right."
         + ("" if best is None else f" Green: {best.change.key} changed as advised."),
-        Axis("severity, of what is asked about [%]", log=True),
+        Axis("severity, relative to that asked about [%]", log=True),
         Axis(names=tuple(names)),
         series,
         more={"lines": [100.0], "row": 22, "notes": [_asked(families[n]) for n in names]},
@@ -91,7 +91,7 @@ def _advised(best: Advice, rows: Mapping[str, int]) -> Series:
     limits = {n: one for n, one in best.after.limits.items() if n in rows}
     shares = {n: 100 * one.separated / one.clear for n, one in limits.items()}
     known = {n: share for n, share in shares.items() if math.isfinite(share) and share > 0}
-    text = [f"{n}\nwith the advice {share:.3g} % of what is asked about" for n, share in known.items()]
+    text = [f"{n}\nwith the advice {share:.3g} % of the severity asked about" for n, share in known.items()]
     more = {"text": text, "symbol": "diamond", "size": 3.5}
     return Series("with the advice", "points", list(known.values()), [rows[n] for n in known], "green", more)
 

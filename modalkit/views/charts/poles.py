@@ -14,7 +14,7 @@ KINDS = {
     "new": ("new at its order", "cross", "faint", 2.6),
     "short": ("chain too short", "dot", "faint", 2.6),
     "outside": ("outside the band", "up", "muted", 3.0),
-    "pruned": ("struck off by the fit", "square", "orange", 3.0),
+    "pruned": ("rejected by the fit", "square", "orange", 3.0),
     "background": ("not determined by the data", "diamond", "orange", 3.0),
     "dropped": ("dropped by hand", "cross", "red", 4.0),
     "mode": ("a mode", "dot", "blue", 2.6),
@@ -72,7 +72,7 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
     return Chart(
         name,
         poles_title(origins, int(np.sum(near))),
-        "Every pole of every order by what became of it; modes stand above, dotted below.",
+        "All poles of all orders by their outcome; modes are marked at the top, with dotted lines.",
         Axis("frequency [Hz]", range=(low - edge, high + edge)),
         Axis("model order", range=(0.0, 1.04 * top)),
         series,

@@ -59,17 +59,21 @@ def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart
     for i in np.argsort(-left, kind="stable")[:count].tolist():
         curves = [
             Curve("measured", "measured", frfs.frequency, frfs.values[i]),
-            Curve("remainder", "what the fit leaves", frfs.frequency, frfs.values[i] - fitted[i]),
+            Curve("remainder", "residual of the fit", frfs.frequency, frfs.values[i] - fitted[i]),
             Curve("fit", "fit", frfs.frequency, fitted[i]),
         ]
         name_of = f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left"
         items.append((name_of, [magnitude(curve, keep) for curve in curves]))
     misfit = np.sqrt(np.sum(np.abs(frfs.values - fitted) ** 2) / np.sum(np.abs(frfs.values) ** 2))
-    rest = f" {len(names) - count} better ones are not in this file." if count < len(names) else ""
+    rest = (
+        f" {len(names) - count} FRFs with a smaller misfit are not in this file."
+        if count < len(names)
+        else ""
+    )
     return Chart(
         name,
         f"{counted(len(names), 'FRF')}, {counted(len(model), 'mode')}: the fit leaves {percent(100 * misfit)} r.m.s.",
-        f"Magnitude, the fit, and what it leaves, the worst first. Dotted: the modes.{rest}",
+        f"Magnitude, the fit and its residual, the worst first. Dotted: the modes.{rest}",
         Axis("frequency [Hz]", range=ends(frfs)),
         Axis(f"|H| [{frfs.unit}]", log=True),
         choices=Choices("FRF", items, frfs.frequency[keep]),
@@ -102,7 +106,7 @@ def cmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "cmif") -> Chart:
     what = (
         "A peak is a mode; with one reference or response two close modes show as one."
         if table.shape[1] == 1
-        else "A peak of the first is a mode; one of the second at the same place is another mode beside it."
+        else "A peak of the first curve is a mode; a peak of the second at the same frequency is a second mode there."
     )
     return _indicator_chart(
         frfs, table, (name, "CMIF", what), Axis(f"CMIF [({frfs.unit})²]", log=True), _positive
@@ -124,7 +128,7 @@ def mvmif_chart(frfs: FrfSet, table: pd.DataFrame, name: str = "mvmif") -> Chart
     what = (
         "A minimum is a mode; with one reference or response two close modes show as one."
         if table.shape[1] == 1
-        else "A minimum of the first is a mode; one of the second at the same place is another mode beside it."
+        else "A minimum of the first curve is a mode; one of the second at the same frequency is a second mode there."
     )
     return _indicator_chart(
         frfs, table, (name, "MvMIF", what), Axis("MvMIF [-]", range=(0.0, 1.05)), np.asarray
@@ -152,7 +156,7 @@ def _indicator_chart(
     return Chart(
         name,
         f"{word}: {counted(count, 'mode indicator function')} of {counted(len(frfs.responses), 'FRF')}",
-        what + (f" Left out, as FRFs lack: {', '.join(left)}." if left else ""),
+        what + (f" Left out, because FRFs are missing: {', '.join(left)}." if left else ""),
         Axis("frequency [Hz]", range=(float(lines[0]), float(lines[-1]))),
         axis,
         series,

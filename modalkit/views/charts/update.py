@@ -49,7 +49,7 @@ def factors_chart(factors: Mapping[str, Factor]) -> Chart | None:
         f"{known[far][0]} moved by {change}"
         if len(known) == 1
         else f"{counted(len(known), 'factor')}; {known[far][0]} moved most, by {change}",
-        "Over the nominal values, with two standard deviations. Dotted: 1, where they began.",
+        "Factors on the nominal values, with two standard deviations. Dotted: the start, 1.",
         Axis("factor on the nominal value [-]", range=_with_one(factor - sigma, factor + sigma)),
         Axis(names=tuple(name for name, _, _ in known)),
         [
@@ -112,7 +112,7 @@ def course_chart(
         if one.printed is not None:
             ends, stated = steps[[0, -1]], np.full(2, one.printed)
             series.append(Series(f"printed {one.printed:.3g}", "line", ends, stated, shade, {"dash": True}))
-    again = " Dotted: a stage begins or is taken up again." if len(repeats) else ""
+    again = " Dotted: a stage starts or is repeated." if len(repeats) else ""
     names = ", ".join(one.name for one in courses)
     more = {"lines": [float(at) for at in repeats]}
     return Chart(name, title, f"{names}.{again}", Axis("iteration"), axis, series, 220.0, more=more)

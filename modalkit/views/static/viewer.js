@@ -222,7 +222,7 @@ function caption(page, mode, view) {
         ? "One point of the lines was not measured and is drawn at rest."
         : `${page.still} points of the lines were not measured and are drawn at rest.`,
     );
-  if (page.lines_from === "grid" && page.lines.length) parts.push("The file has no lines; they join the neighbours of the grid.");
+  if (page.lines_from === "grid" && page.lines.length) parts.push("The file has no lines; neighbours on the grid are joined.");
   if (page.why) parts.push(`${page.why[0].toUpperCase()}${page.why.slice(1)}.`);
   if (page.no_model && page.no_model !== "the study has no [model]") parts.push(`No model: ${page.no_model}`);
   return parts.join(" ");

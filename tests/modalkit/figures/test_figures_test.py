@@ -158,7 +158,7 @@ def test_auto_mac_names_the_modes_of_like_shape() -> None:
         dofs=tuple(Dof(i, 3) for i in (1, 2, 3)),
         shapes=shapes.astype(complex),
     )
-    assert "Modes 1 and 3 look alike by 99 %" in words(auto_mac_figure(modal))
+    assert "Modes 1 and 3 are similar (99 %)" in words(auto_mac_figure(modal))
     with pytest.raises(InputError, match="no shapes"):
         auto_mac_figure(ModalData(frequency=np.array([10.0]), frequency_sigma=np.ones(1)))
 

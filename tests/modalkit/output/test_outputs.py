@@ -145,7 +145,7 @@ def test_inputs_and_files_of_others_stay(refused: Refused, words: str) -> None:
 
 def test_the_message_says_what_to_type(refused: Refused) -> None:
     assert refused("identify", "test.uff", "-o", "study.toml").endswith(
-        "modes are written by their ending, .bunv, .uf, .uff, .unv, .csv, .json; name another file, as study_modes.uff"
+        "the ending states the format, .bunv, .uf, .uff, .unv, .csv, .json; name another file, as study_modes.uff"
     )
     assert refused("frf", "test.uff", "-o", "test.uff").endswith(
         "test.uff: this command reads it; name another file, as test_frfs.uff"

@@ -97,7 +97,7 @@ export function open(root, app) {
                 one.p,
               ]),
             ),
-            h("p", { class: "muted" }, "Evidence over that of no cause, in powers of ten. Provisional: the most probable are integrated more closely, and sets of causes follow where none alone explains the data."),
+            h("p", { class: "muted" }, "Evidence relative to no cause, in powers of ten. Provisional: the most probable causes are still refined, and sets of causes follow if no single cause explains the data."),
           ]
         : null,
     );
@@ -114,7 +114,7 @@ export function open(root, app) {
             "p",
             { class: "done", id: "accepted" },
             `Accepted: ${accepted.join("; ")}. `,
-            found ? "The answer below is what is left." : "It is part of the study now; diagnose the rest.",
+            found ? "The answer below explains the remaining gap." : "It is part of the study now; diagnose the rest.",
           )
         : null,
     );
@@ -163,7 +163,7 @@ export function open(root, app) {
         ]),
       ),
       [...new Set(ranking.map(([, , own]) => own?.why_not).filter(Boolean))].map((why) =>
-        h("p", { class: "muted" }, `Not to be accepted: ${why}.`),
+        h("p", { class: "muted" }, `Cannot be accepted: ${why}.`),
       ),
       h(
         "p",

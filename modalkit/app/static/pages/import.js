@@ -255,7 +255,7 @@ export function open(root, app) {
         : [
             h("p", { class: "big", id: "import-usable" }, found.usable.join("; ")),
             table(
-              "By point. Numbers far from those expected show a wrong unit.",
+              "Values by point. Values far from those expected indicate a wrong unit.",
               found.columns.map((name, k) => ({ name, number: k !== 0 && name !== "measured at" })),
               found.table.map((row) => row.map(String)),
             ),

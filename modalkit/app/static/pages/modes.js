@@ -11,8 +11,8 @@ const FEW = 600; // poles up to which letters stand beside them before anybody a
 
 // what the curves behind the poles show
 const BEHIND = {
-  CMIF: "CMIF: a peak of the first is a mode, one of the second at the same line another one beside it.",
-  MvMIF: "MvMIF, from 0 to 1: a minimum of the first is a mode, one of the second at the same line another one beside it.",
+  CMIF: "CMIF: a peak of the first curve is a mode; a peak of the second at the same frequency is a second mode there.",
+  MvMIF: "MvMIF, from 0 to 1: a minimum of the first curve is a mode; one of the second at the same frequency is a second mode there.",
 };
 
 export function open(root, app) {
@@ -117,7 +117,7 @@ export function open(root, app) {
       value: page.order ?? "",
       placeholder: "60",
       "aria-label": "highest model order",
-      title: "poles sought at the most; of several references, over all of them",
+      title: "largest number of poles sought, over all references",
       id: "order",
       keydown: entered(orderNow),
     });

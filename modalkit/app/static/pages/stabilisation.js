@@ -7,7 +7,7 @@ const KINDS = [
   ["new", "new at its order", "x-thin", 5, "faint"],
   ["short", "chain too short", "circle-open", 5, "faint"],
   ["outside", "outside the band", "triangle-up-open", 6, "muted"],
-  ["pruned", "struck off by the fit", "square-open", 6, "orange"],
+  ["pruned", "rejected by the fit", "square-open", 6, "orange"],
   ["background", "not determined by the data", "diamond-open", 6, "orange"],
   ["dropped", "dropped by you", "cross-thin", 7, "red"],
   ["mode", "a mode", "circle", 5, "blue"],

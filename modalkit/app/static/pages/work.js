@@ -7,7 +7,7 @@ import { button, fill, h } from "../dom.js";
 function timed({ seconds, remaining_s: left }) {
   const since = `${seconds.toFixed(0)} s`;
   if (left === null) return since;
-  return left < 1 ? `${since}, longer than last time` : `${since}, about ${left.toFixed(0)} s left, by the last time`;
+  return left < 1 ? `${since}, longer than last time` : `${since}, about ${left.toFixed(0)} s left, judged by the last run`;
 }
 
 const OFTEN = 400; // milliseconds between questions for what a stage is at
