@@ -238,6 +238,7 @@ def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
 def _peaks(
     problem: DiagnosisProblem, candidate: Candidate, places: list[FloatArray], maximisations: int, bar: float
 ) -> list[Peak]:
+    swap = _exchanged(problem, candidate)
     if len(places) > maximisations:
         evaluations = evaluate_many(problem, candidate, places)
         heights = np.array([evaluation.marginal.log_likelihood for evaluation in evaluations])
@@ -246,10 +247,12 @@ def _peaks(
             nearest = nearest[_maxima(heights)[nearest]]
         tried = [highest(problem, candidate, evaluations[i], rounds=STEPS_TRIED, bar=bar) for i in nearest]
         tried.sort(key=lambda p: -p.marginal.log_likelihood)
-        peaks = [maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried)[:maximisations]]
+        peaks = [
+            maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried, swap)[:maximisations]
+        ]
     else:
         peaks = [maximise(problem, candidate, place, bar=bar) for place in places]
-    found = [peaks[i] for i in _distinct([peak.point for peak in peaks])]
+    found = [peaks[i] for i in _distinct([peak.point for peak in peaks], swap)]
     top = found[0].point.marginal.log_likelihood
     return [
         peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < PEAK_BEHIND
@@ -271,12 +274,29 @@ def _maxima(heights: FloatArray) -> BoolArray:
     return np.asarray((level >= around[:-2]) & (level >= around[2:]))
 
 
-def _distinct(points: Sequence[Point]) -> list[int]:
-    """Return which points are not in the same place as a higher one, the highest first."""
+def _exchanged(problem: DiagnosisProblem, candidate: Candidate) -> IntArray | None:
+    """Return the order of the parameters after two of one effect in one form are exchanged, (k,); None where none are.
+
+    Both orders are one explanation: samples from both would mix the sizes and places of the two.
+    """
+    names, forms = candidate.names, candidate.forms
+    if len(problem.specimens) > 1 or len(names) != 2 or names[0] != names[1] or forms[0] != forms[1]:
+        return None
+    count = len(problem.parameters(candidate))
+    return np.roll(np.arange(count), count // 2)
+
+
+def _distinct(points: Sequence[Point], swap: IntArray | None) -> list[int]:
+    """Return which points are not in the same place as a higher one, the highest first.
+
+    Nor are those that are in its place with the parameters in the order ``swap`` (k,).
+    """
     kept: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: -points[i].marginal.log_likelihood):
         here = points[i].coordinates
-        if all(np.abs(here - points[j].coordinates).max() >= SAME_PEAK for j in kept):
+        orders = [here] if swap is None else [here, here[swap]]
+        known = (points[j].coordinates for j in kept)
+        if all(np.abs(one - other).max() >= SAME_PEAK for other in known for one in orders):
             kept.append(i)
     return kept
 
