@@ -25,8 +25,8 @@ from modalkit.blind import DrawRanges, draw_trial, write_trial
 from modalkit.simulator.drawing.ranges import KINDS
 from modalkit.workflow.case import open_study
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import evaluate
 from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.points import evaluate
 from updating.likelihood.comparison import CHANNELS
 from updating.likelihood.gaussian import gaussian
 from updating.problem.candidate import Candidate

@@ -345,12 +345,6 @@ deviation."""
 DIFFERENCE_STEP = 1e-3
 """Step of differences for sensitivities, in prior quantiles [-]: between round-off and curvature."""
 
-SHORTEST_STEP = 1e-6
-"""The shortest of them [-]: below it round-off of the modes is more than what they change by."""
-
-DIFFERENCE_SHARE = 0.05
-"""The longest of them, as a share of the likelihood's width [-]. Doubled: slopes err more beside a narrow ridge."""
-
 UNDERSTEPPED = 1.3
 """A step that gains so many times what the parabola promised was too short [-]: far from the data the likelihood's
 tails are heavier than its curvature implies."""

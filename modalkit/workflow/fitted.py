@@ -9,7 +9,8 @@ from acquisition.arrays import FloatArray
 from updating import Case, Diagnosis, Predictor
 from updating.diagnosis.answer.ranked import ParameterEstimate
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import Point, evaluate, highest
+from updating.diagnosis.search.fit import highest
+from updating.diagnosis.search.points import Point, evaluate
 from updating.effects import Variant, in_a_set
 from updating.models.state import State
 from updating.problem.candidate import Candidate

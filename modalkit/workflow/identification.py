@@ -69,7 +69,7 @@ def read(
         return from_content(content, paths, processing)
     if replace(processing, layout=None) != AS_READ:
         raise InputError(
-            f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
+            f"{modes.source}: contains modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
         )
     return modes
 
@@ -95,7 +95,7 @@ def read_frfs(
     found = read(path, processing=processing, progress=progress)
     if isinstance(found, Modes):
         raise InputError(
-            f'{found.source}: holds modes, but neither raw hits nor FRFs; a study names them by modes = "..."'
+            f'{found.source}: contains modes, but neither raw hits nor FRFs; a study names them by modes = "..."'
         )
     return found
 

@@ -24,6 +24,7 @@ from modalkit.figures.style import (
     caption,
     caption_height,
     heading,
+    ink_on,
     new_figure,
     place,
     shortened,
@@ -180,7 +181,7 @@ def _cells(axes: Axes, values: FloatArray, left: float, y: float, cell: float) -
             y,
             text.replace("-", "−") if known else "–",
             fontsize=SMALL,
-            color="white" if known and abs(value) > 0.7 * FAR else INK,
+            color=ink_on(colour),
             ha="center",
             va="center",
         )

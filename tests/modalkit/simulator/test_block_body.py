@@ -21,8 +21,8 @@ from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from updating import LIBRARY, Predictor, diagnose
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import evaluate
 from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.points import evaluate
 from updating.problem.candidate import Candidate
 from updating.test_data.measured import Measured
 from updating.thresholds import REGION_MESH_DOUBT

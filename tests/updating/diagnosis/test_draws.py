@@ -5,7 +5,8 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.search.fit import Peak, Point
+from updating.diagnosis.search.fit import Peak
+from updating.diagnosis.search.points import Point
 from updating.diagnosis.search.sampling import about, draw_posterior
 from updating.likelihood.gaussian import Marginal
 

@@ -10,7 +10,7 @@ from updating_cases import BEAM, DOUBTS, POINTS, blank, case_of, exactly
 
 from updating import LIBRARY, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import evaluate, evaluate_many
+from updating.diagnosis.search.points import evaluate, evaluate_many
 from updating.problem.candidate import Candidate
 
 

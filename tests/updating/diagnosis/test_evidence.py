@@ -13,8 +13,9 @@ from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
-from updating.diagnosis.search.fit import Point, evaluate, maximise
+from updating.diagnosis.search.fit import maximise
 from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.points import Point, evaluate
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import gaussian, marginal, normal_equations
 from updating.problem.candidate import Candidate

@@ -12,7 +12,7 @@ from updating import LIBRARY
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.fewer import with_parts
-from updating.diagnosis.search.fit import evaluate
+from updating.diagnosis.search.points import evaluate
 from updating.problem.candidate import Candidate
 
 

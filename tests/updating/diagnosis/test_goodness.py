@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from updating.diagnosis.search.fit import Point
 from updating.diagnosis.search.goodness import p_value, p_values
+from updating.diagnosis.search.points import Point
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
 from updating.thresholds import REPEATED_SCATTER_PRIOR

@@ -9,7 +9,8 @@ from updating_cases import BEAM, blank, case_of, exactly
 
 from updating import LIBRARY, Predictor
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import evaluate, maximise
+from updating.diagnosis.search.fit import maximise
+from updating.diagnosis.search.points import evaluate
 from updating.models.spec import Material
 from updating.problem.candidate import Candidate
 

@@ -10,7 +10,7 @@ from updating_cases import case_of, observed
 
 from updating import Material, Measured, Spec
 from updating.diagnosis.diagnose import diagnose, pose
-from updating.diagnosis.search.fit import evaluate
+from updating.diagnosis.search.points import evaluate
 from updating.effects import LIBRARY
 from updating.problem.candidate import Candidate
 

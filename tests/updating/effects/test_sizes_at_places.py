@@ -12,7 +12,7 @@ from updating_cases import observed
 from updating import LIBRARY, Case, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
-from updating.diagnosis.search.fit import evaluate
+from updating.diagnosis.search.points import evaluate
 from updating.problem.candidate import Candidate
 
 COUNT = 8

@@ -8,8 +8,8 @@ from updating_cases import BEAM, PLATE, blank, case_of, exactly
 
 from updating import Predictor
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import evaluate
 from updating.diagnosis.search.goodness import p_values
+from updating.diagnosis.search.points import evaluate
 from updating.likelihood.registration import registration_doubt, with_registration
 from updating.models.parts import PointMass
 from updating.problem.candidate import Candidate

@@ -8,7 +8,7 @@ from modalkit.simulator.bodies.plate.parts import PlateAttached
 from modalkit.simulator.bodies.plate.plate import Plate
 from updating import Case, Measured, PointMass, Spec, Tolerances
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import evaluate
+from updating.diagnosis.search.points import evaluate
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 

@@ -12,7 +12,7 @@ from updating_cases import BEAM, blank, exactly
 from updating import Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
-from updating.diagnosis.search.fit import evaluate
+from updating.diagnosis.search.points import evaluate
 from updating.effects import LIBRARY
 from updating.models.state import NOMINAL, State
 from updating.problem.candidate import Candidate

@@ -14,7 +14,8 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import maximise, sensitivities
+from updating.diagnosis.search.fit import maximise
+from updating.diagnosis.search.slope import sensitivities
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import normal_equations
 from updating.thresholds import REFIT_STEPS, SHORT_STEP, UNSEEN_CURVATURE

@@ -19,7 +19,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.generic.columns import PROPERTIES, Columns, columns, compared, correlations
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import sensitivities
+from updating.diagnosis.search.slope import sensitivities
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import Marginal, marginal
 from updating.problem.specimen import SpecimenProblem

@@ -12,7 +12,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import sensitivities
+from updating.diagnosis.search.slope import sensitivities
 from updating.likelihood.comparison import Comparison
 from updating.problem.specimen import SpecimenProblem
 

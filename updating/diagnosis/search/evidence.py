@@ -11,8 +11,9 @@ from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.fit import Peak, Point, evaluate, evaluate_many, highest, maximise
+from updating.diagnosis.search.fit import Peak, highest, maximise
 from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.points import Point, evaluate, evaluate_many
 from updating.diagnosis.search.ridges import along_ridge
 from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, least
 from updating.problem.candidate import Candidate

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import chi2, f, norm
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.diagnosis.search.fit import Point
+from updating.diagnosis.search.points import Point
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.likelihood.gaussian import gaussian, normal_equations
 from updating.thresholds import SHAPE_NOISE_SCALES

@@ -11,7 +11,8 @@ from scipy.optimize import lsq_linear
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import highest, sensitivities
+from updating.diagnosis.search.fit import highest
+from updating.diagnosis.search.slope import sensitivities
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal, normal_equations
 from updating.problem.candidate import Candidate

@@ -10,8 +10,9 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain
-from updating.diagnosis.search.fit import Point, sensitivities
 from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.points import Point
+from updating.diagnosis.search.slope import sensitivities
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
 from updating.likelihood.outliers import Outlier, log_price, suspects, with_outliers

@@ -12,7 +12,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.fit import Peak, evaluate, maximise
+from updating.diagnosis.search.fit import Peak, maximise
+from updating.diagnosis.search.points import evaluate
 from updating.problem.candidate import Candidate
 from updating.thresholds import PEAK_BEHIND, RIDGE_FLAT, RIDGE_STEEP, RIDGE_STEP, RIDGE_STEPS, STEPS_TRIED
 

@@ -10,8 +10,10 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import Point, evaluate_many, highest, sensitivities
+from updating.diagnosis.search.fit import highest
+from updating.diagnosis.search.points import Point, evaluate_many
 from updating.diagnosis.search.prior import log_prior
+from updating.diagnosis.search.slope import sensitivities
 from updating.diagnosis.search.together import (
     Part,
     join,

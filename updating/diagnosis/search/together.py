@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain
-from updating.diagnosis.search.fit import sensitivities
+from updating.diagnosis.search.slope import sensitivities
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
 from updating.thresholds import CLIMBS
