@@ -100,7 +100,7 @@ def hit_scatter(measured: Measured, prediction: Prediction) -> HitScatter | None
         return None
     constants = measured.constants
     by = moved(measured, prediction, stated_levels(measured, prediction), constants)
-    slopes = np.moveaxis(by.first, 0, -1)
+    slopes = np.moveaxis(by.first[: measured.points.shape[1]], 0, -1)
     loadings = np.concatenate([slopes, constants[:, :, None]], axis=2)
     if loadings.shape[1] <= loadings.shape[2]:
         return None

@@ -30,8 +30,8 @@ class Marks:
         Which of the columns of :meth:`Places.columns` is the first of theirs; the others follow.
     points : (n,) int array
         Points of the test.
-    doubt : (n, dim) array
-        How well the place of each is known [m].
+    doubt : (n, d) array
+        How well the place of each is known along each axis [m]; then which of several nodes at it is meant [-].
     """
 
     end: Literal["hit", "seen"]
@@ -106,7 +106,15 @@ class Places:
             return [self._doubted(point, np.hypot(marks, about))]
         ranks, first = np.unique(hits, return_inverse=True)[1], np.unique(hits, return_index=True)[1]
         axes = test.points.shape[1]
-        return [self._doubted(point, marks), (ranks, np.repeat(about[first][:, None], axes, axis=1))]
+        around = np.zeros((len(first), axes + self._sides))
+        around[:, :axes] = about[first][:, None]
+        return [self._doubted(point, marks), (ranks, around)]
+
+    @property
+    def _sides(self) -> int:
+        """How many parts of a motion tell several nodes at one place."""
+        axes = int(self.setting.measured.points.shape[1])
+        return len(self.setting.predictor.doubted) - axes
 
     def _marks_and_hits(self, own: HitScatter) -> tuple[FloatArray, FloatArray]:
         """Return the doubts in the mark of each FRF and in the mean place of its hits about it, (n_frf,) each [m].
@@ -200,9 +208,10 @@ class Places:
         return np.concatenate(found)
 
     def _doubted(self, place: IntArray, sigma: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, dim) [m].
+        """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, d).
 
-        A point at the end of the model was at the end of the specimen, wherever that is.
+        A point at the end of the model was at the end of the specimen, wherever that is. Which of several nodes at a
+        point is meant is not known; with a baseline it is the same in both tests.
         """
         test, spec = self.setting.measured, self.setting.predictor.spec
         points, first, rank = np.unique(place, return_index=True, return_inverse=True)
@@ -211,4 +220,5 @@ class Places:
             if loose:
                 at, size = test.points[points, axis], (spec.length, spec.width)[axis]
                 doubt[:, axis] = with_registration(doubt[:, axis], at, size, loose)
-        return rank, doubt
+        unknown = 1.0 if self.setting.before is None else 0.0
+        return rank, np.hstack([doubt, np.full((len(doubt), self._sides), unknown)])

@@ -136,6 +136,9 @@ class Structure(ABC):
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, Sparse]:
         """Return displacement ``w`` and slopes at points, each (n_points, n_dofs).
 
+        Where a model has several nodes at a point, ``side0`` and more are what the one that is meant
+        moves differently from ``w``, their mean, per standard deviation.
+
         Parameters
         ----------
         points : (n_points, dim) array

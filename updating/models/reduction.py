@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import chain, combinations
 from types import MappingProxyType
 
@@ -12,6 +13,7 @@ from acquisition.arrays import FloatArray
 from updating.models.base import Structure
 from updating.models.columns import columns_along, extend_basis
 from updating.models.fields import Sparse
+from updating.models.imported.placing import SIDE
 from updating.models.reduced import ROTATION, TRANSLATION, Reduced
 from updating.models.structure import FieldStructure
 
@@ -52,7 +54,7 @@ def reduce_structure(
     low = values <= values[min(structure.rigid_modes, count - 1)] / STATIC
     values, basis = values[low], vectors[:, low]
     if len(values) < unknowns:
-        loads = structure.rows(points, directions)["w"].toarray().T
+        loads = _loads(structure.rows(points, directions))
         basis = extend_basis(basis, _static_answers(structure, mass, values, basis, loads), mass)
         for state in structure.stretched:
             stiff, heavy = structure.matrices(state)
@@ -66,6 +68,13 @@ def reduce_structure(
             ranks[released] = basis.shape[1]
         ranks[TRANSLATION] = basis.shape[1]
     return _with_parts(structure, Reduced(structure, basis, ranks), mass)
+
+
+def _loads(rows: Mapping[str, Sparse]) -> FloatArray:
+    """Return the unit forces at points whose static answers join the basis, on every side of a joint, (n_dofs, n)."""
+    there = [matrix for name, matrix in rows.items() if name == "w" or name.startswith(SIDE)]
+    found = sparse.vstack(there).toarray()
+    return np.asarray(found[np.any(found != 0, axis=1)].T)
 
 
 def _with_parts(structure: Structure, reduced: Reduced, mass: Sparse) -> Reduced:

@@ -28,10 +28,11 @@ class Moved(NamedTuple):
     ----------
     constants : (n_frf, n_modes) array
         The constants themselves, of the shapes that the derivatives are of.
-    first : (dim, n_frf, n_modes) array
-        Derivatives by the place of the hit, of the sensor where no force is known [constants per m].
-    sensor : (dim, n_frf, n_modes) array
-        Those by the place of the sensor where a force is known, else 0 [constants per m].
+    first : (d, n_frf, n_modes) array
+        Derivatives by the place of the hit, of the sensor where no force is known [constants per m]; then changes by
+        which of several nodes at the point is meant [constants].
+    sensor : (d, n_frf, n_modes) array
+        Those by the place of the sensor where a force is known, else 0.
     """
 
     constants: FloatArray
@@ -115,5 +116,6 @@ def per_place(rank: IntArray, sigma: FloatArray, along: FloatArray) -> FloatArra
 def squared_wave_numbers(test: Measured, now: Prediction) -> FloatArray:
     """Return k^2 of each mode along each axis, where one end of the FRFs roves, (dim, n_modes) [1/m^2]."""
     ends = {"hit": (now.hit, now.hit_slopes), "seen": (now.seen, now.seen_slopes)}
-    values, slopes = ends[test.roving]
+    values, changes = ends[test.roving]
+    slopes = changes[: test.points.shape[1]]
     return np.asarray(np.mean(slopes**2, axis=1) / np.maximum(np.mean(values**2, axis=0), 1e-300))

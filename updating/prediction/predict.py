@@ -21,6 +21,7 @@ from updating.models.damping import (
     Matrices,
     layer_slowing,
 )
+from updating.models.imported.placing import SIDE
 from updating.models.reduced import Reduced
 from updating.models.reduction import reduce_structure
 from updating.models.response import receptance
@@ -179,7 +180,6 @@ class Predictor(Displayed):
         values, vectors = self.reduced.eigen(total)
         chosen = self._chosen(values, count, at_least)
         read = measurement_chain(self.measured, total)
-        axes = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         rows = self._rows(total, read.points)
         moving = structural(vectors, total.absorbers)
         damped_modes = self.dampers.coupled_modes(total, values, vectors, chosen)
@@ -199,8 +199,8 @@ class Predictor(Displayed):
             constants=level * constants,
             seen=shapes["w"][read.seen],
             hit=read.at_hit(shapes["w"], 1.0),
-            seen_slopes=np.stack([shapes[n][read.seen] for n in axes]),
-            hit_slopes=np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
+            seen_slopes=np.stack([shapes[n][read.seen] for n in self.doubted]),
+            hit_slopes=np.stack([read.at_hit(shapes[n], 0.0) for n in self.doubted]),
             log_frequency_by=by.T,
             constants_by=level[:, :, None] * constants_change(shapes["w"], changes, read),
             vectors=np.real(modes),
@@ -266,6 +266,12 @@ class Predictor(Displayed):
         rows: dict[str, FloatArray] = kept[key]
         return rows
 
+    @cached_property
+    def doubted(self) -> tuple[str, ...]:
+        """Rows by which a point's place is in doubt: slopes, and the sides of joints at which some points lie."""
+        sides = tuple(name for name in self.nominal_rows if name.startswith(SIDE))
+        return ("wx", "wy", "wz")[: self.measured.points.shape[1]] + sides
+
     def _rows(self, state: State, places: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return the rows of the basis at places, the test's points where none are given."""
         stretch = self.stretch.by(state.factors)
@@ -275,7 +281,8 @@ class Predictor(Displayed):
         points = places if places is not None and elsewhere else self.measured.points
         rows = self.reduced.rows(self.stretch.undone(points, stretch), self._directions(len(points)))
         along = dict(zip(("wx", "wy"), stretch.tolist(), strict=False))
-        return {n: m / along.get(n, 1.0) for n, m in rows.items()}
+        there = {n: m / along.get(n, 1.0) for n, m in rows.items()}
+        return {n: np.zeros_like(there["w"]) for n in self.doubted} | there
 
     def _directions(self, count: int) -> FloatArray | None:
         stated = self.measured.directions

@@ -25,8 +25,10 @@ class Prediction(Displayed):
         Modal constants phi_response * phi_reference, the gain included [1/kg].
     seen, hit : (n_frf, n_modes) arrays
         Mode shapes at the response and at the force of every FRF; 1 where no force is known [kg^-1/2].
-    seen_slopes, hit_slopes : (dim, n_frf, n_modes) arrays
-        Their derivatives by the position of the sensor, and of the hit; 0 where there is none [1/(kg^1/2 m)].
+    seen_slopes, hit_slopes : (d, n_frf, n_modes) arrays
+        Their derivatives by the position of the sensor, and of the hit, along each axis; 0 where there is none
+        [1/(kg^1/2 m)]. Then their changes per standard deviation of which of several nodes at the point is meant
+        [kg^-1/2].
     log_frequency_by : (n_modes, n_factors) array
         Derivatives of ln f by the logarithms of the factors and masses asked for [-], and by bodies' places [1/m].
     constants_by : (n_frf, n_modes, n_factors) array

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -155,11 +156,14 @@ def matched(
             f"the test spans {quantity(np.ptp(points, axis=0).max(), 'm')} along the model's axes: {stated}"
         )
     taken, between, moved = points.copy(), dict[int, float](), dict[int, float]()
+    several: dict[int, tuple[int, ...]] = {}
     for i, (point, (node, direction)) in enumerate(zip(points, keys, strict=True)):
         for axis in np.flatnonzero(np.abs(direction) > 1e-9).tolist():
             if not places.has(axis):
                 continue
             found = places.find(point, axis)
+            if len(found.sides):
+                several[node] = tuple(places.node[found.index[found.sides.any(axis=0)]].tolist())
             if not found.on if tolerance is None else found.distance > tolerance:
                 raise StudyError(_astray(point, node, found, spec, tolerance))
             if not found.on:
@@ -167,7 +171,18 @@ def matched(
                 moved[node] = max(moved.get(node, 0.0), found.distance)
             elif found.distance > 0.05 * found.spacing:
                 between[node] = max(between.get(node, 0.0), found.distance)
-    return taken, _beside_nodes(between, moved)
+    return taken, _beside_nodes(between, moved) + _at_several_nodes(several)
+
+
+def _at_several_nodes(several: Mapping[int, tuple[int, ...]]) -> tuple[str, ...]:
+    """Return which points lie where the model has several nodes, by their numbers."""
+    if not several:
+        return ()
+    node, there = next(iter(several.items()))
+    return (
+        f"{len(several)} test point(s) lie where the model has several nodes: point {node} at nodes "
+        f"{' and '.join(map(str, sorted(there)))}; the test does not tell which of them it is, so this is left open",
+    )
 
 
 def _beside_nodes(between: dict[int, float], moved: dict[int, float]) -> tuple[str, ...]:

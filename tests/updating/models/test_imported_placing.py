@@ -70,6 +70,27 @@ def test_at_a_node_the_node_alone_speaks(kind: str) -> None:
     assert found.weights.tolist() == np.eye(len(found.weights))[0].tolist()
 
 
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_of_several_nodes_at_a_point_each_may_be_meant(count: int) -> None:
+    """Their mean is read, and the parts besides have the covariance of one of them, each as likely."""
+    line = cloud("line")
+    at = np.vstack([line, np.tile(line[5], (count - 1, 1))])
+    found = places(at).find(line[5], 2)
+    there = np.isin(found.index, [5, *range(len(line), len(at))])
+    np.testing.assert_allclose(found.weights, there / count, atol=1e-12)
+    motion = np.random.default_rng(count).standard_normal(len(at))
+    one_of = motion[found.index][there]
+    assert np.sum((found.sides @ motion[found.index]) ** 2) == pytest.approx(np.var(one_of))
+
+
+def test_a_node_that_is_held_is_not_meant_beside_one_that_moves() -> None:
+    at = np.array([[0.0, 0, 0], [0.1, 0, 0], [0.2, 0, 0], [0.3, 0, 0], [0.2, 0, 0]])
+    table = NodeTable(np.arange(5), at, np.full(5, 3), np.array([0, 1, 2, 3, -1]))
+    rows = Places.of(table, 4).rows(at[[2]], np.array([[0.0, 0.0, 1.0]]))
+    assert rows["w"].toarray().tolist() == [[0.0, 0.0, 1.0, 0.0]]
+    assert "side0" not in rows
+
+
 @pytest.mark.parametrize("kind", ["line", "plane", "block"])
 def test_a_point_beyond_the_nodes_is_off(kind: str) -> None:
     at = cloud(kind)

@@ -28,6 +28,10 @@ BEYOND = 0.3
 """How far beyond the last nodes a point may lie, relative to the spacing [-]."""
 
 
+SIDE = "side"
+"""How the names of rows begin in which several nodes at one place move differently from their mean."""
+
+
 @dataclass(frozen=True, eq=False)
 class Found:
     """A point among the nodes.
@@ -40,6 +44,9 @@ class Found:
         Their shares in the motion at the point [-].
     slopes : (3, k) array
         Their shares in its derivatives along x, y and z [1/m].
+    sides : (s, k) array
+        Their shares in what one of several nodes at the point moves differently from the mean of these, in independent
+        parts of unit variance; which of the nodes is meant is not known. Empty where there is one [-].
     nearest : int
         The nearest node.
     distance, spacing, beyond : float
@@ -49,6 +56,7 @@ class Found:
     index: IntArray
     weights: FloatArray
     slopes: FloatArray
+    sides: FloatArray
     nearest: int
     distance: float
     spacing: float
@@ -122,7 +130,7 @@ class Places:
 
         The fit is a cubic surface through the nodes about the point, nearest nodes weighing most: moving least squares
         (Lancaster and Salkauskas 1981) with weights that fall with the fourth power of the distance, so that at a node
-        only the node counts.
+        only the node counts. Where several nodes are at the point, as the two sides of a joint are, their mean counts.
 
         Parameters
         ----------
@@ -145,12 +153,29 @@ class Places:
         around = min(9 if len(axes) > 1 else 3, len(index))
         spacing = float(np.atleast_1d(tree.query(self.at[index[near[0]]], k=around)[0])[-1]) or spread
         weights, slopes = _fit((self.at[index[near]] - point) / spacing, distance / spacing, axes)
+        sides = np.zeros((0, count))
         if distance[0] <= AT * spacing:
-            weights = np.eye(count)[0]
-        beyond = _beyond((self.at[index[near[:around]]] - point) @ axes.T)
+            weights, sides = _of_sides(self._meant(index[near], distance <= AT * spacing, axis))
         return Found(
-            index[near], weights, slopes / spacing, int(index[near[0]]), float(distance[0]), spacing, beyond
+            index=index[near],
+            weights=weights,
+            slopes=slopes / spacing,
+            sides=sides,
+            nearest=int(index[near[0]]),
+            distance=float(distance[0]),
+            spacing=spacing,
+            beyond=_beyond((self.at[index[near[:around]]] - point) @ axes.T),
         )
+
+    def _meant(self, index: IntArray, there: BoolArray, axis: int) -> BoolArray:
+        """Return which of some nodes a point at a node may be, (k,): those ``there`` that move, or all if none does."""
+        moving = self._moving[axis][index] & there
+        return moving if moving.any() else there
+
+    @cached_property
+    def _moving(self) -> BoolArray:
+        """Which nodes the matrices move along and about each axis, (6, n): the others are held by a support."""
+        return np.array([np.diff(motion.indptr) > 0 for motion in (*self.moves, *self.turns)])
 
     def _held(self, point: FloatArray, axis: int) -> Found | None:
         """Return the shares of the element that holds a point; None where there is none, or a node of it has no row."""
@@ -165,7 +190,14 @@ class Places:
         spacing = float(np.median(np.linalg.norm(self.at[index] - self.at[index].mean(axis=0), axis=1)))
         nearest = int(index[np.argmin(away)])
         return Found(
-            index, element.weights, element.slopes, nearest, element.distance, spacing, element.distance
+            index=index,
+            weights=element.weights,
+            slopes=element.slopes,
+            sides=np.zeros((0, len(index))),
+            nearest=nearest,
+            distance=element.distance,
+            spacing=spacing,
+            beyond=element.distance,
         )
 
     def rows(self, points: FloatArray, directions: FloatArray) -> dict[str, Sparse]:
@@ -180,7 +212,8 @@ class Places:
         -------
         dict
             ``w`` the displacement along the direction; ``wx``, ``wy``, ``wz`` its derivatives along x, y and z as far
-            as they lie in the surface that is hit, across the direction.
+            as they lie in the surface that is hit, across the direction. ``side0`` and more, where several nodes are at
+            one of the points: what the one that is meant moves differently from ``w``, see :class:`Found`.
         """
         n = self.moves[0].shape[1]
         names = ("w", "wx", "wy", "wz")
@@ -192,8 +225,10 @@ class Places:
                     continue
                 found = self.find(point, axis)
                 moves = self.moves[axis][found.index]
-                shares = np.vstack([found.weights, across @ found.slopes]) * along[axis]
-                for name, share in zip(names, shares, strict=True):
+                shares = np.vstack([found.weights, across @ found.slopes, found.sides]) * along[axis]
+                sides = [f"{SIDE}{k}" for k in range(len(found.sides))]
+                for name, share in zip((*names, *sides), shares, strict=True):
+                    total.setdefault(name, [Sparse((1, n))] * len(points))
                     total[name][i] = Sparse(total[name][i] + Sparse(share[None, :]) @ moves)
         return {name: Sparse(sparse.vstack(rows)) if rows else Sparse((0, n)) for name, rows in total.items()}
 
@@ -222,6 +257,19 @@ def _beyond(offset: FloatArray) -> float:
     middle = offset.mean(axis=0)
     length = float(np.linalg.norm(middle))
     return max(float((offset @ middle).min()) / length, 0.0) if length > 0 else 0.0
+
+
+def _of_sides(meant: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Return the shares (n,) of nodes in the mean of those meant, and in what one of them moves differently, (s, n).
+
+    One of m nodes, each as likely, has the mean and a covariance of (1 - 1/m) / m along m - 1 directions.
+    """
+    several = np.flatnonzero(meant)
+    mean = meant / len(several)
+    apart = np.linalg.svd(np.eye(len(several)) - 1.0 / len(several))[0][:, : len(several) - 1]
+    sides = np.zeros((len(several) - 1, len(meant)))
+    sides[:, several] = apart.T / np.sqrt(len(several))
+    return mean, sides
 
 
 def _fit(offset: FloatArray, distance: FloatArray, axes: FloatArray) -> tuple[FloatArray, FloatArray]:

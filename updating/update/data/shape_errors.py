@@ -69,16 +69,18 @@ def _flat(causes: FloatArray) -> FloatArray:
 def _misplaced(test: Measured, at: Prediction) -> tuple[FloatArray, list[FloatArray]]:
     """Return what hits and sensors out of place by a sigma do: a variance (1, n_modes), causes (n_frf * n_modes, k).
 
-    A point's error is the same for all modes and all sensors: one cause for each direction. What slopes leave out is a
-    variance of its own for each place of what roves, and a factor on all constants of a mode for each fixed transducer.
-    Its size is half the curvature times the square of the error, whose mean square is 3 sigma^4. A transducer that is
-    far from a crest feels the curvature of the whole wave.
+    A point's error is the same for all modes and all sensors: one cause for each direction, and for which of several
+    nodes at the point is meant. What slopes leave out is a variance of its own for each place of what roves, and a
+    factor on all constants of a mode for each fixed transducer. Its size is half the curvature times the square of the
+    error, whose mean square is 3 sigma^4. A transducer that is far from a crest feels the curvature of the whole wave.
     """
-    if test.position_sigma <= 0 or not len(at.seen_slopes):
+    dim = test.points.shape[1]
+    if len(at.seen_slopes) <= dim and (test.position_sigma <= 0 or not len(at.seen_slopes)):
         return np.zeros((1, test.constants.shape[1])), []
     level = stated_levels(test, at)
     by = moved(test, at, level, test.constants)
-    doubts = np.full((len(test.points), len(by.first)), test.position_sigma)
+    doubts = np.ones((len(test.points), len(by.first)))
+    doubts[:, :dim] = test.position_sigma
     causes = [
         per_place(np.where(test.hit < 0, test.seen, test.hit), doubts, by.first),
         per_place(test.seen, doubts, by.sensor),
