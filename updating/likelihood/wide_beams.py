@@ -37,16 +37,22 @@ class WideBeams(Nuisances):
         """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-]."""
         if not self.present:
             return np.zeros((level.size, 0))
-        # of the nominal modes: what an effect changes of a shape changes a doubt of per cents by little
         alike = np.sum(now.constants * self.setting.nominal.constants, axis=0)
-        change = np.where(alike < 0, -1.0, 1.0) * level * self._changes
+        change = np.where(alike < 0, -1.0, 1.0) * self._changed(now, level)
         return np.moveaxis(change, 0, -1).reshape(level.size, -1)
 
-    def variance(self, level: FloatArray) -> FloatArray:
+    def variance(self, now: Prediction, level: FloatArray) -> FloatArray:
         """Return what bricks have beyond the plate, near ends and edges above all, (n_frf, n_modes) [-]."""
         if not self.present:
             return np.zeros_like(level)
-        return np.asarray(np.sum((BEYOND_PLATE * level * self._changes) ** 2, axis=0))
+        return np.asarray(np.sum((BEYOND_PLATE * self._changed(now, level)) ** 2, axis=0))
+
+    def _changed(self, now: Prediction, level: FloatArray) -> FloatArray:
+        """Return the changes of the nominal shapes, read through the gain of the state, (k, n_frf, n_modes) [-].
+
+        What an effect changes of a shape changes a doubt of per cents by little. A gain changes all that is read.
+        """
+        return np.asarray(level * now.gain / self.setting.nominal.gain * self._changes)
 
     @cached_property
     def _changes(self) -> FloatArray:

@@ -59,12 +59,17 @@ def test_a_shape_turned_round_and_a_gain_are_followed() -> None:
     other = replace(now, constants=-now.constants, seen=-now.seen)
     assert WideBeams(setting).columns(other, level) == pytest.approx(-plain)
     assert columns(setting, gain=0.7) == pytest.approx(0.7 * columns(setting))
+    louder = replace(now, gain=3.0 * now.gain, constants=3.0 * now.constants)
+    assert WideBeams(setting).columns(louder, level / 3.0) == pytest.approx(plain)
+    assert WideBeams(setting).variance(louder, level / 3.0) == pytest.approx(
+        WideBeams(setting).variance(now, level)
+    )
 
 
 def test_the_rest_is_a_share_of_what_the_plate_moves_beyond() -> None:
     setting = setting_of()
     level = np.ones_like(setting.nominal.constants)
-    found = WideBeams(setting).variance(level)
+    found = WideBeams(setting).variance(setting.nominal, level)
     assert found == pytest.approx(BEYOND_PLATE**2 * np.sum(columns(setting) ** 2, axis=2))
 
 
@@ -76,4 +81,4 @@ def test_a_beam_without_poissons_ratio_has_none() -> None:
     assert WideBeams(setting).present
     assert not WideBeams(without).present
     assert WideBeams(without).columns(setting.nominal, level).shape == (level.size, 0)
-    assert not WideBeams(without).variance(level).any()
+    assert not WideBeams(without).variance(without.nominal, level).any()
