@@ -121,6 +121,19 @@ def test_a_slope_lies_in_the_surface_that_is_hit() -> None:
     assert np.abs(along).max() > 1
 
 
+@pytest.mark.parametrize("kind", ["line", "plane", "block"])
+def test_a_section_turns_with_its_node(kind: str) -> None:
+    """A bar that twists moves beside its axis: w of a turn by omega is omega x r, and its slopes are of that."""
+    at, turn = cloud(kind), np.array([0.3, -0.7, 0.2])
+    motion = np.hstack([np.cross(turn, at), np.tile(turn, (len(at), 1))]).ravel()
+    along = np.array([0.48, -0.6, 0.64])
+    rows = places(at, (1, 2, 3, 4, 5, 6)).rows(at[:3], np.tile(along, (3, 1)))
+    found = np.stack([rows[name] @ motion for name in ("wx", "wy", "wz")])
+    gradient = np.cross(along, turn)  # of omega x r . n by r
+    expected = gradient - along * (along @ gradient)
+    np.testing.assert_allclose(found, np.tile(expected, (3, 1)).T, atol=1e-12)
+
+
 def plate(directions: tuple[int, ...] = (1, 2, 3)) -> Imported:
     """Return a grid of masses on springs, 0.4 x 0.2 m."""
     at = np.array([(x, y, 0.0) for x in 0.4 * np.arange(9) / 8 for y in 0.2 * np.arange(5) / 4])

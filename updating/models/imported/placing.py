@@ -224,13 +224,32 @@ class Places:
                 if abs(along[axis]) < 1e-9 or not self.has(axis):
                     continue
                 found = self.find(point, axis)
-                moves = self.moves[axis][found.index]
-                shares = np.vstack([found.weights, across @ found.slopes, found.sides]) * along[axis]
                 sides = [f"{SIDE}{k}" for k in range(len(found.sides))]
-                for name, share in zip((*names, *sides), shares, strict=True):
+                moved = Sparse(np.vstack([found.weights, found.sides])) @ self.moves[axis][found.index]
+                each = Sparse(sparse.vstack([moved, Sparse(across) @ self._gradient(found, axis)]))
+                for k, name in enumerate(("w", *sides, *names[1:])):
                     total.setdefault(name, [Sparse((1, n))] * len(points))
-                    total[name][i] = Sparse(total[name][i] + Sparse(share[None, :]) @ moves)
+                    total[name][i] = Sparse(total[name][i] + along[axis] * each[[k]])
         return {name: Sparse(sparse.vstack(rows)) if rows else Sparse((0, n)) for name, rows in total.items()}
+
+    def _gradient(self, found: Found, axis: int) -> Sparse:
+        """Return the derivatives of a displacement at a point along x, y and z, (3, n_dofs) [1/m].
+
+        At a node that turns, the section about it turns with it: u + theta x r. Nodes around a point do not tell how a
+        bar twists, nor what either of two does that meet there.
+        """
+        fitted = Sparse(Sparse(found.slopes) @ self.moves[axis][found.index])
+        if found.distance > AT * found.spacing:
+            return fitted
+        used, weights = found.index[found.weights != 0], Sparse(found.weights[None, :])
+        after, last = (axis + 1) % 3, (axis + 2) % 3
+        known: dict[int, Sparse] = {}
+        for along, about, sign in ((after, last, -1.0), (last, after, 1.0)):
+            if self._moving[3 + about, used].all():
+                known[along] = Sparse(sign * weights @ self.turns[about][found.index])
+        if len(known) == 2:  # what is left along the axis itself is a strain
+            known[axis] = Sparse(fitted[[axis]].shape)
+        return Sparse(sparse.vstack([known.get(along, fitted[[along]]) for along in range(3)]))
 
     def motions(self, points: FloatArray, axes: range = range(3)) -> Sparse:
         """Return all displacements (or rotations, axes 3 to 5) that the matrices have at points (n, 3) [m]."""
