@@ -58,9 +58,30 @@ def shares(predictor: Predictor, values: Values, *, soft: float = 0.0) -> FloatA
     centre = np.array([values[name] for name in ("x", "y")[:dim]])
     spacing = np.array([spec.length, spec.width])[:dim] / np.array(spec.elements)
     size = np.array(extents(values)[:dim])
-    edge = np.maximum(size * soft, SHARP * spacing)
-    inside = np.prod(0.5 * (1 + np.tanh((size / 2 - np.abs(points - centre)) / edge)), axis=1)
+    return _inside(points - centre, size, np.maximum(size * soft, SHARP * spacing))
+
+
+def _inside(away: FloatArray, size: FloatArray, edge: FloatArray) -> FloatArray:
+    """Return how far places (n, dim), relative to its centre, lie inside a box with soft edges, (n,) [-]."""
+    inside = np.prod(0.5 * (1 + np.tanh((size / 2 - np.abs(away)) / edge)), axis=1)
     return np.where(inside > 1e-4, inside, 0.0)
+
+
+def along_beam(spec: Spec, values: Values, *, soft: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return points of a stretch of a beam, the lengths they stand for [m], and how far they lie inside it, (n,) each.
+
+    The edges of the stretch, ``soft`` of its extent wide [-], are resolved whatever the mesh.
+    """
+    centre, size = float(values["x"]), float(values["extent"])
+    edge = size * soft
+    ends = np.array([[-1.0], [1.0]]) * size / 2 + edge * np.linspace(-5.0, 5.0, 11)
+    nodes = np.linspace(0.0, spec.length, spec.elements[0] + 1)
+    low, high = np.clip(centre + np.array([ends.min(), ends.max()]), 0.0, spec.length)
+    cuts = np.unique(np.clip(np.concatenate([centre + ends.ravel(), nodes]), low, high))
+    at, own = gauss(EXACT)
+    middle, half = (cuts[1:] + cuts[:-1]) / 2, np.diff(cuts) / 2
+    points, lengths = (middle[:, None] + at * half[:, None]).ravel(), (own * half[:, None]).ravel()
+    return points, lengths, _inside(points[:, None] - centre, np.array([size]), np.array([edge]))
 
 
 def extents(values: Values) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Parameter, Values
 from updating.effects.box import (
     SOFT,
+    along_beam,
     extents,
     shares,
     starting_places,
@@ -18,6 +19,7 @@ from updating.effects.box import (
 from updating.effects.mechanism import INTEGRAL_COMPLIANCE, Size
 from updating.effects.regions import regions_meant, stiff_regions
 from updating.effects.structure.either_way import EitherWay
+from updating.models.soft_stretch import Profile, soft_stretch
 from updating.models.softening import softening
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -108,7 +110,9 @@ class LocalStiffness(EitherWay):
             left = 1 - values["loss"]
             return State(regional={(i, "E"): left for i in regions_meant(predictor.spec, values)})
         factors = predictor.base.factors
-        if predictor.spec.kind == "beam" or predictor.reduced.whole:
+        if predictor.spec.kind == "beam":
+            return State(stiffness=(soft_stretch(predictor.reduced, _profile(predictor, values), factors),))
+        if predictor.reduced.whole:
             lost = self._softening(predictor, values)
             return State(stiffness=(-predictor.reduced.weighted("stiffness", lost, factors),))
         inside = shares(predictor, values, soft=SOFT)
@@ -128,10 +132,16 @@ class LocalStiffness(EitherWay):
         """Return the compliance, the integral of EI0/EI - 1 along x, of plates its mean across: what data determine."""
         if predictor.spec.kind == "matrices":
             return {"compliance": (values["loss"] / (1 - values["loss"]), "-")}
+        if predictor.spec.kind == "beam":
+            _, lengths, compliance = _profile(predictor, values)
+            return {"compliance": (float(lengths @ compliance), "m")}
         lost = self._softening(predictor, values)
-        across = 1.0
-        if predictor.spec.kind == "plate":
-            low, high = (values["y"] + side * extents(values)[1] / 2 for side in (-1, 1))
-            across = min(high, predictor.spec.width) - max(low, 0.0)
-        compliance = float(predictor.reduced.fields.weights @ (1 / (1 - lost) - 1)) / across
-        return {"compliance": (compliance, "m")}
+        low, high = (values["y"] + side * extents(values)[1] / 2 for side in (-1, 1))
+        across = min(high, predictor.spec.width) - max(low, 0.0)
+        return {"compliance": (float(predictor.reduced.fields.weights @ (1 / (1 - lost) - 1)) / across, "m")}
+
+
+def _profile(predictor: Predictor, values: Values) -> Profile:
+    """Return by how much a stretch of a beam is softer; soft edges do not change its whole compliance."""
+    points, lengths, inside = along_beam(predictor.spec, values, soft=SOFT)
+    return Profile(points, lengths, values["loss"] / (1 - values["loss"]) * inside)
