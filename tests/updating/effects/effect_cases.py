@@ -196,7 +196,35 @@ def _hung(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _soft(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    if structure.fields.dim == 1:
+        return {"stiffness": _bent(structure, values)}
     return {"stiffness": structure.matrix("stiffness", -values["loss"] * _box(structure, values, 1 / 16))}
+
+
+def _bent(structure: FieldStructure, values: dict[str, Any], count: int = 4000) -> Sparse:
+    """Element by element: the moment is linear, and the curvature what it makes of it in a thousand slices."""
+    spec, fields = structure.spec, structure.fields
+    length = spec.length / spec.elements[0]
+    read = (
+        fields.sampled["rx" if "rx" in fields.sampled else "wxx"]
+        .toarray()
+        .reshape(spec.elements[0], -1, fields.n_dofs)
+    )
+    at, weights = fields.points[:, 0].reshape(len(read), -1), fields.weights.reshape(len(read), -1)
+    bending = spec.material.E * spec.width * spec.thickness**3 / 12
+    total = np.zeros((fields.n_dofs,) * 2)
+    for element, curvature in enumerate(read):
+        s = (np.arange(count) + 0.5) / count - 0.5
+        away = abs((element + 0.5 + s) * length - values["x"])
+        inside = 0.5 + 0.5 * np.tanh((values["extent"] / 2 - away) / (values["extent"] / 16))
+        compliance = values["loss"] / (1 - values["loss"]) * inside
+        linear = np.stack([np.ones(count), s])
+        plain = linear @ linear.T * length / count / bending
+        soft = (linear * (1 + compliance)) @ linear.T * length / count / bending
+        own = np.stack([np.ones_like(at[element]), at[element] / length - element - 0.5])
+        moments = (own * weights[element]) @ curvature
+        total += moments.T @ (np.linalg.inv(soft) - np.linalg.inv(plain)) @ moments
+    return Sparse(total)
 
 
 def _heavy(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
