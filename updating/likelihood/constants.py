@@ -99,7 +99,7 @@ class Constants(Quantity):
         level = self._level(constants, view)
         predicted, by = constants * level, by * level[:, :, None]
         variance = self._known_errors if missed is None else self._known_errors + missed * level**2
-        variance = variance + self._wide_beams.variance(now, level)
+        variance = variance + self._wide_beams.variance(now, level) + self.places.left_out(now, level)
         if view.state.delay:
             variance = variance + self._late(view.state.delay) ** 2
         by_place = self.places.columns(now, level, self._measured)

@@ -149,6 +149,23 @@ class Places:
         hits = sum(doubt.size for _, doubt in self._hit)
         return Marks("hit", 0, np.unique(test.hit), self._hit[0][1]), Marks("seen", hits, seen, self._seen[1])
 
+    def left_out(self, now: Prediction, level: FloatArray) -> FloatArray:
+        """Return the variance of what slopes leave out where no prediction is linearised anew, (n_frf, n_modes) [-].
+
+        A point that is off by dx moves by half of its curvature times dx^2 besides, whose mean square is 3 sigma^4 / 4
+        times that of the curvature. That of a fixed transducer all constants of a mode have in common, see
+        :mod:`updating.likelihood.nodes`. A baseline had the same points.
+        """
+        test = self.setting.measured
+        if self.marks or self.setting.before is not None or not len(test.seen):
+            return np.zeros_like(level)
+        doubts = [self._seen] if test.roving == "seen" and not test.bare else self._hit
+        fourth = 0.75 * np.sum([doubt[rank, 0] ** 4 for rank, doubt in doubts], axis=0)
+        curvature = np.sum(squared_wave_numbers(test, now), axis=0) ** 2 * np.mean(
+            (level * now.constants) ** 2, axis=0
+        )
+        return np.asarray(fourth[:, None] * curvature)
+
     @cached_property
     def movable(self) -> IntArray:
         """Which of the columns of :meth:`columns` are of these marks, (m,)."""
