@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from updating_cases import BEAM, blank, case_of, exactly
 
 from updating import LIBRARY, Predictor
 from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search import slope as slopes
 from updating.diagnosis.search.fit import maximise
 from updating.diagnosis.search.points import evaluate
 from updating.models.spec import Material
@@ -40,3 +42,27 @@ def test_a_slope_beside_a_narrow_ridge_is_that_of_the_likelihood() -> None:
             evaluate(problem, candidate, end, about=peak.point.about).marginal.log_likelihood for end in ends
         )
         assert abs(peak.gradient[i] - (high - low) / (2 * short)) < 0.02 / width[i]
+
+
+def test_a_slope_that_is_taken_again_takes_no_longer_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a likelihood with kinks a long step sees a narrow one and a short step a wide one: no search ends in turns."""
+    taken: list[np.ndarray] = []
+
+    def kinked(*others: object) -> slopes.Slope:
+        sizes = np.asarray(others[-1])
+        narrow = np.roll([1.0, 1e10], len(taken))
+        taken.append(sizes)
+        return slopes.Slope(
+            columns=np.zeros((1, 2)), normal=np.diag(narrow), load=np.zeros(2), noise_gradient=np.zeros(2),
+            steps=sizes, fresh=True,
+        )  # fmt: skip
+
+    monkeypatch.setattr(slopes, "_sloped", kinked)
+    predictor = Predictor(BAR, blank(POINTS))
+    truth = predictor.predict(count=6)
+    problem, _ = pose(case_of(exactly(predictor, truth), BAR))
+    two = Candidate((LIBRARY["calibration_gain"], LIBRARY["E"]))
+    peak = maximise(problem, two, np.array([0.5, 0.5]), rounds=0)
+    assert np.isfinite(peak.gradient).all()
+    assert (np.diff(taken, axis=0) <= 0).all()
+    assert len(taken) < 12

@@ -76,8 +76,9 @@ def maximise(
     if not point.possible:
         return Peak(point, np.eye(len(point.coordinates)), np.zeros(len(point.coordinates)))
     hopeless = slope is not None and bar - point.marginal.log_likelihood >= HOPELESS_BEHIND
+    again = False
     while slope is None or not (slope.fresh or hopeless):
-        slope = slope_at(problem, candidate, point, keep, slope)
+        slope, again = slope_at(problem, candidate, point, keep, slope, again=again), True
     return Peak(point, slope.normal, slope.gradient)
 
 

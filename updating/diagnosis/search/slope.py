@@ -60,6 +60,8 @@ class Slope:
         Slope of the log-likelihood, the noise as it is [-].
     noise_gradient : (k,) array
         What the noise's own change with the parameters adds to it [-].
+    steps : (k,) array
+        Lengths of the differences that it was taken by [-].
     fresh : bool
         Whether it was taken at this very point, by steps that are short enough.
     """
@@ -68,6 +70,7 @@ class Slope:
     normal: FloatArray
     load: FloatArray
     noise_gradient: FloatArray
+    steps: FloatArray
     fresh: bool
 
     @property
@@ -82,14 +85,19 @@ def slope_at(
     point: Point,
     keep: BoolArray | None,
     before: Slope | None = None,
+    *,
+    again: bool = False,
 ) -> Slope:
     """Take the slope at a point by differences, their steps a small share of the likelihood's own width.
 
     Over a longer step the likelihood falls by its curvature, and its slope is the small difference of two large
     numbers: beside a narrow ridge it points down where the way is up. The width is that of the slope ``before``. Where
-    the steps prove too long, the sensitivities are good, and the slope is the data's own; it is not ``fresh``.
+    the steps prove too long, the sensitivities are good, and the slope is the data's own; it is not ``fresh``. Taken
+    ``again`` at the same point, no step grows: of a likelihood that is not smooth each length may give another width.
     """
     sizes = _plain_steps(point) if before is None else _within_width(before.normal)
+    if again and before is not None:
+        sizes = np.minimum(sizes, before.steps)
     slope = _sloped(problem, candidate, point, keep, sizes)
     if np.any(_within_width(slope.normal) < 0.5 * sizes):
         return replace(slope, noise_gradient=np.zeros_like(slope.load), fresh=False)
@@ -116,7 +124,7 @@ def _sloped(
     columns, rise, steps = _differences(problem, candidate, point, keep, sizes)
     normal, load = curvature(point, columns, keep)
     rise = rise + 0.5 * steps * np.diag(normal)  # a difference is the slope half a step away
-    return Slope(columns, normal, load, _finite(rise - load), fresh=True)
+    return Slope(columns, normal, load, _finite(rise - load), np.abs(steps), fresh=True)
 
 
 def curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
