@@ -13,6 +13,7 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.effects.base import EDGES, Parameter, Values
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
+from updating.models.structure import FieldStructure
 from updating.prediction.predict import Predictor
 
 Place = tuple[float, float, float]
@@ -40,20 +41,20 @@ LIKE = 1e-6
 """So near to each other, relative to the size, two places are one [-]."""
 
 
-def shares(predictor: Predictor, values: Values, *, soft: float = 0.0) -> FloatArray:
+def shares(structure: FieldStructure, values: Values, *, soft: float = 0.0) -> FloatArray:
     """Return how far every quadrature point lies inside a box about ``x`` (and ``y``), shape (n_points,) [-].
 
     Parameters
     ----------
-    predictor : Predictor
-        The specimen.
+    structure : FieldStructure
+        The beam or plate with its mesh.
     values : mapping
         ``x``, for plates ``y``, and ``extent``: the length of the stretch, or of the rectangle along x; along y that
         is ``extent_y``, or as long [m].
     soft : float
         Width of the edges relative to the extents, at least what the mesh resolves [-].
     """
-    points, spec = predictor.reduced.fields.points, predictor.spec
+    points, spec = structure.fields.points, structure.spec
     dim = points.shape[1]
     centre = np.array([values[name] for name in ("x", "y")[:dim]])
     spacing = np.array([spec.length, spec.width])[:dim] / np.array(spec.elements)

@@ -68,6 +68,12 @@ class Component:
         numbers[place] = nodal.T
         return edges, numbers
 
+    def nodes(self) -> tuple[FloatArray, IntArray]:
+        """Return the nodes of a displacement, (n, dim) [m], and their degrees of freedom, (n, 2) or (n, 4)."""
+        edges, numbers = self._grid
+        at = np.stack(np.meshgrid(*edges, indexing="ij"), axis=-1)
+        return at.reshape(-1, len(edges)), numbers.reshape(-1, numbers.shape[-1])
+
     def at(self, points: FloatArray, n_dofs: int) -> dict[str, Sparse]:
         """Return the displacement and its slopes at any points (n_points, dim) [m], each (n_points, n_dofs).
 

@@ -7,6 +7,9 @@ itself, minimising the energy over the amplitudes of a leaves B' dK B - B' dK a 
 basis B: Guyan's condensation (AIAA Journal 3, 380, 1965), of residual flexibility (MacNeal 1971, Computers &
 Structures 1, 581-601). The answers keep the clamps: of a place on a clamp that is released too, up to a fifth of the
 shift is missing. Their inertia is neglected.
+
+Curvature gathers within a place of one or two elements as little as in the basis. So all of this is done on elements of
+a half or a third of the size, where the mesh is coarse: a cubic element's motion is one of the elements that divide it.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ from updating.models.reduced import Reduced
 from updating.models.structure import FieldStructure
 from updating.models.terms import FieldTerm
 
-MODES, ANSWERS = 12, 6
+MODES, ANSWERS = 12, 10
 """Low modes whose forces load a soft place, and how many combinations of these are answered, twice."""
 
 FAINT = 1e-3
@@ -40,6 +43,10 @@ LACKING = 1e-8
 """Share of its energy below which an answer lies in the basis already [-]."""
 
 
+NODAL = {"w": (), "wx": (0,), "wy": (1,), "wxy": (0, 1)}
+"""Degrees of freedom of a node of a thin plate, in their order."""
+
+
 @dataclass(frozen=True, eq=False)
 class Softening:
     """What turns a loss of stiffness at the quadrature points of a plate into a matrix on the reduced basis.
@@ -49,11 +56,14 @@ class Softening:
     reduced : Reduced
         The nominal model.
     structure : FieldStructure
-        The same before its reduction.
+        The same before its reduction, on elements that resolve a place.
+    basis : (n_dofs, r) array
+        The reduced basis on these [-].
     """
 
     reduced: Reduced
     structure: FieldStructure
+    basis: FloatArray
 
     def change(self, inside: FloatArray, loss: float, factors: Mapping[str, float]) -> FloatArray:
         """Return the change of stiffness that a loss makes, shape (r, r) [SI].
@@ -68,7 +78,7 @@ class Softening:
             Factors of the state on top of which it comes, the same for the place and for all around it [-].
         """
         if not loss or not inside.any():
-            return np.zeros((self.reduced.basis.shape[1],) * 2)
+            return np.zeros((self.basis.shape[1],) * 2)
         key = (inside.tobytes(), *sorted(factors.items()))
         if key not in self._known:
             while len(self._known) >= PLACES:
@@ -88,7 +98,7 @@ class Softening:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return B' P B, a' P B and a' P a for the stiffness P of a place and its answers a, orthonormal in K."""
         dofs, place = self._place(inside, factors)
-        basis, scale = self.reduced.basis[dofs], self._scale(factors)
+        basis, scale = self.basis[dofs], self._scale(factors)
         forces = place @ basis
         first = self.structure.rigid_modes
         low = forces[:, first : first + MODES] / np.sqrt(np.diag(self._stiff)[first : first + MODES])
@@ -118,7 +128,7 @@ class Softening:
         first = self.structure.rigid_modes
         if not first:
             return 0.0
-        shape = self.reduced.basis[:, first]
+        shape = self.basis[:, first]
         return 1e-3 * float(shape @ (self.structure.matrix("stiffness") @ shape))
 
     @cached_property
@@ -139,7 +149,7 @@ class Softening:
     @cached_property
     def _stiff(self) -> FloatArray:
         """The same matrix on the clamped columns of the basis, (n, n) [SI]."""
-        basis = self.reduced.basis[:, : self.reduced.ranks[frozenset()]]
+        basis = self.basis[:, : self.reduced.ranks[frozenset()]]
         return np.asarray(basis.T @ (self._held @ basis))
 
     @cached_property
@@ -182,6 +192,17 @@ class Softening:
         return float(np.exp(np.mean([np.log(term.scale(factors)) for term in self._terms])))
 
 
+def _on_finer(coarse: FieldStructure, fine: FieldStructure, basis: FloatArray) -> FloatArray:
+    """Return motions (n_dofs, r) of a plate on elements that divide its own."""
+    if fine is coarse:
+        return basis
+    (plate,), points, numbers = coarse.fields.components, *fine.fields.components[0].nodes()
+    found = np.zeros((fine.n_dofs, basis.shape[1]))
+    for number, rows in zip(numbers.T, plate.hermite(points, coarse.n_dofs, NODAL).values(), strict=True):
+        found[number] = rows @ basis
+    return found
+
+
 def _leading(loads: FloatArray) -> FloatArray:
     """Return the combinations of loads (n, k) that are strongest, at most ``ANSWERS``."""
     left, size, _ = np.linalg.svd(loads, full_matrices=False)
@@ -207,6 +228,7 @@ def softening(reduced: Reduced) -> Softening:
         If the model has no fields.
     """
     if "softening" not in reduced.kept:
-        reduced.kept["softening"] = Softening(reduced, reduced.fielded)
+        fine = reduced.fielded.finer
+        reduced.kept["softening"] = Softening(reduced, fine, _on_finer(reduced.fielded, fine, reduced.basis))
     found: Softening = reduced.kept["softening"]
     return found

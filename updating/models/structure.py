@@ -41,6 +41,11 @@ MOST_CELLS = 40
 """So many cells a beam has at most: of ten modes a soft stretch is right to per cents of its shift."""
 
 
+RESOLVED = 32
+"""About so many elements along a side resolve soft places of a tenth of it: their shift is right to some 3 %, and to
+14 % on half as many."""
+
+
 @dataclass(frozen=True, eq=False)
 class FieldStructure(Structure):
     """A finite-element model of a beam or a plate, ready to be reduced or solved.
@@ -163,6 +168,15 @@ class FieldStructure(Structure):
         """Where in its cell each lies, from -1 to 1, (n_points,) [-]."""
         low, high = self.cells[self.cell_of], self.cells[self.cell_of + 1]
         return np.asarray((2 * self.fields.points[:, 0] - low - high) / (high - low))
+
+    @cached_property
+    def finer(self) -> FieldStructure:
+        """A thin plate on elements that divide its own and resolve soft places; itself where there is no need."""
+        spec = self.spec
+        elements = tuple(n * max(round(RESOLVED / n), 1) for n in spec.elements)
+        if spec.kind != "plate" or spec.theory != "kirchhoff" or elements == spec.elements:
+            return self
+        return build_field_structure(spec.with_elements(*elements))
 
     def softenings(self, elastic: FloatArray) -> FloatArray:
         """Return the loads that a softened place feels: moments per element of a beam, modal forces per region."""

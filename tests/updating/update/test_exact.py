@@ -22,6 +22,9 @@ CONDENSED = {"fluid_added_mass", "fluid_damping"}
 
 COUNT = 5
 NO_FULL = CONDENSED | {"shear", "absorber"}
+
+COARSE = {("local_stiffness", "plate")}
+"""Effects on models whose own mesh does not resolve them."""
 PLACES = ["beam", "timoshenko", "plate", "free", "matrices"]
 
 
@@ -48,6 +51,9 @@ def test_every_parameter_moves_the_full_model_as_the_reduced_one(name: str, plac
     """
     effect, predictor = LIBRARY[name], LOOK[place]
     start = form(effect, predictor, 0.35)
+    if (name, place) in COARSE:
+        assert exact(effect, predictor, start) is None
+        return
     before, lower = exact(effect, predictor, start), reduced(effect, predictor, start)
     assert before is not None
     np.testing.assert_allclose(before, lower, rtol=bound(effect, predictor, before))
@@ -71,6 +77,9 @@ def test_the_full_model_is_the_one_put_together_by_hand(name: str, place: str) -
     stretch = {"from", "to"}  # of clamps, which are put in by hand along whole edges
     start = {key: value for key, value in form(effect, predictor, 0.35).items() if key not in stretch}
     varied = [{**start, p.name: p.value(0.6)} for p in effect.parameters(predictor) if p.name not in stretch]
+    if (name, place) in COARSE:
+        assert exact(effect, predictor, start) is None
+        return
     for values in (start, *varied):
         by_hand = full_modes(name, predictor, values, COUNT)
         # the tails of a place's edges are cut off at 1e-4, which a gain makes more of
@@ -98,6 +107,9 @@ def test_an_effect_in_the_model_beforehand_acts_on_the_full_one(name: str, place
     values = form(effect, plain, 0.6, loss=0.85)
     predictor = replace(plain, additions=(lambda on: effect.state(on, values),))
     found = exact_modes(predictor, lambda on: State(factors={"E": 1.1}), COUNT)
+    if (name, place) in COARSE:
+        assert found is None
+        return
     assert found is not None
     np.testing.assert_allclose(
         found[0], predictor.predict(State(factors={"E": 1.1}), count=COUNT).frequency, rtol=5e-4

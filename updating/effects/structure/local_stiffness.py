@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from types import MappingProxyType
 
-import numpy as np
-
-from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Parameter, Values
 from updating.effects.box import (
     SOFT,
@@ -113,14 +110,13 @@ class LocalStiffness(EitherWay):
         if predictor.spec.kind == "beam":
             return State(stiffness=(soft_stretch(predictor.reduced, _profile(predictor, values), factors),))
         if predictor.reduced.whole:
-            lost = self._softening(predictor, values)
+            if predictor.reduced.fielded.finer is not predictor.reduced.fielded:
+                predictor.reduced.refuse_whole("a soft place on a plate of few elements")
+            lost = values["loss"] * shares(predictor.reduced.fielded, values, soft=SOFT)
             return State(stiffness=(-predictor.reduced.weighted("stiffness", lost, factors),))
-        inside = shares(predictor, values, soft=SOFT)
-        return State(stiffness=(softening(predictor.reduced).change(inside, values["loss"], factors),))
-
-    def _softening(self, predictor: Predictor, values: Values) -> FloatArray:
-        """Return the share of the stiffness lost at every quadrature point [-]: a box with soft edges."""
-        return np.asarray(values["loss"] * shares(predictor, values, soft=SOFT))
+        plate = softening(predictor.reduced)
+        inside = shares(plate.structure, values, soft=SOFT)
+        return State(stiffness=(plate.change(inside, values["loss"], factors),))
 
     def sizes(self, predictor: Predictor, values: Values) -> tuple[Size, ...]:
         """Return the compliance, of a region of matrices over its own."""
@@ -135,10 +131,11 @@ class LocalStiffness(EitherWay):
         if predictor.spec.kind == "beam":
             _, lengths, compliance = _profile(predictor, values)
             return {"compliance": (float(lengths @ compliance), "m")}
-        lost = self._softening(predictor, values)
+        structure = predictor.reduced.fielded
+        lost = values["loss"] * shares(structure, values, soft=SOFT)
         low, high = (values["y"] + side * extents(values)[1] / 2 for side in (-1, 1))
         across = min(high, predictor.spec.width) - max(low, 0.0)
-        return {"compliance": (float(predictor.reduced.fields.weights @ (1 / (1 - lost) - 1)) / across, "m")}
+        return {"compliance": (float(structure.fields.weights @ (1 / (1 - lost) - 1)) / across, "m")}
 
 
 def _profile(predictor: Predictor, values: Values) -> Profile:

@@ -143,7 +143,7 @@ class DampingPatch(Effect):
         if not values["mass"] or not predictor.spec.outlined:
             return 0.0
         sizes = predictor.reduced.fields.weights
-        under = float(sizes @ shares(predictor, values) / sizes.sum())
+        under = float(sizes @ shares(predictor.reduced.fielded, values) / sizes.sum())
         return float(values["mass"]) * under * total_mass(predictor.spec)
 
     def _covered(self, predictor: Predictor, values: Values, *, mass: bool) -> tuple[FloatArray, FloatArray]:
@@ -155,7 +155,7 @@ class DampingPatch(Effect):
             for term, regions in zip(reduced.structure.terms, reduced.parts, strict=True):
                 parts[term.kind] = parts[term.kind] + term.scale(factors) * sum(regions[i] for i in meant)
             return parts["stiffness"], parts["mass"]
-        inside = shares(predictor, values)
+        inside = shares(predictor.reduced.fielded, values)
         stiffness = covered(predictor, "stiffness", inside)
         return stiffness, covered(predictor, "mass", inside) if mass else stiffness
 
