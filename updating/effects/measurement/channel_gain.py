@@ -27,7 +27,8 @@ class ChannelGain(Effect):
     name = "channel_gain"
     channel = "measurement"
     summary = (
-        "The level of some points is off by one factor: a loose plug, a worn tip, another range or sensor."
+        "The level of some points is off by one factor: a loose plug, a worn tip, another range or sensor, hits askew "
+        "to the surface."
     )
     footprint = (
         "The constants of the points, or of a fixed sensor, change by one factor in all modes; all other constants, "
