@@ -162,9 +162,9 @@ def test_a_plate_that_is_its_own_basis_lacks_nothing() -> None:
     assert found[:n, :n] == pytest.approx(plain[:n, :n], abs=1e-9 * np.abs(plain[:n, :n]).max())
 
 
-@pytest.mark.parametrize("elements", [(12, 10), (20, 14), (38, 20)])
-def test_a_soft_place_hardly_depends_on_the_mesh_of_a_plate(elements: tuple[int, int]) -> None:
-    """Of an eighth of the sides, beside a mesh of 76 x 40 elements."""
+@pytest.mark.long
+def test_a_soft_place_hardly_depends_on_the_mesh_of_a_plate() -> None:
+    """Of an eighth of the sides, beside a mesh of 54 x 32 elements."""
     spot = {"x": 0.16, "y": 0.08, "extent": 0.045, "extent_y": 0.025, "loss": 0.8}
 
     def shifts(elements: tuple[int, int]) -> np.ndarray:
@@ -172,8 +172,9 @@ def test_a_soft_place_hardly_depends_on_the_mesh_of_a_plate(elements: tuple[int,
         state = LIBRARY["local_stiffness"].state(predictor, spot)
         return np.log(predictor.predict(state, count=6).frequency / predictor.predict(count=6).frequency)
 
-    fine = shifts((76, 40))
-    assert shifts(elements) == pytest.approx(fine, abs=0.06 * np.abs(fine).max())
+    fine = shifts((54, 32))
+    for elements in ((12, 10), (20, 14), (27, 16)):
+        assert shifts(elements) == pytest.approx(fine, abs=0.06 * np.abs(fine).max())
 
 
 def test_regions_of_imported_matrices_soften_and_damp() -> None:
