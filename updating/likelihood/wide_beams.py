@@ -37,9 +37,7 @@ class WideBeams(Nuisances):
         """Return the change of the constants per standard deviation, (n_frf n_modes, k) [-]."""
         if not self.present:
             return np.zeros((level.size, 0))
-        alike = np.sum(now.constants * self.setting.nominal.constants, axis=0)
-        change = np.where(alike < 0, -1.0, 1.0) * self._changed(now, level)
-        return np.moveaxis(change, 0, -1).reshape(level.size, -1)
+        return np.moveaxis(self._changed(now, level), 0, -1).reshape(level.size, -1)
 
     def variance(self, now: Prediction, level: FloatArray) -> FloatArray:
         """Return what bricks have beyond the plate, near ends and edges above all, (n_frf, n_modes) [-]."""
@@ -48,11 +46,16 @@ class WideBeams(Nuisances):
         return np.asarray(np.sum((BEYOND_PLATE * self._changed(now, level)) ** 2, axis=0))
 
     def _changed(self, now: Prediction, level: FloatArray) -> FloatArray:
-        """Return the changes of the nominal shapes, read through the gain of the state, (k, n_frf, n_modes) [-].
+        """Return the changes of the nominal shapes at the level that the state gives them, (k, n_frf, n_modes) [-].
 
-        What an effect changes of a shape changes a doubt of per cents by little. A gain changes all that is read.
+        What an effect changes of a shape changes a doubt of per cents by little. A gain, or the mass that a mode moves,
+        changes all that is read of it.
         """
-        return np.asarray(level * now.gain / self.setting.nominal.gain * self._changes)
+        before = self.setting.nominal
+        gain = now.gain / before.gain
+        power = np.maximum(np.sum(before.constants**2, axis=0), np.finfo(float).tiny)
+        own = np.sum(now.constants / gain * before.constants, axis=0) / power
+        return np.asarray(level * gain * own * self._changes)
 
     @cached_property
     def _changes(self) -> FloatArray:
