@@ -13,7 +13,7 @@ from updating.likelihood.base import Setting
 from updating.likelihood.hit_scatter import HitScatter
 from updating.likelihood.registration import registration_doubt, with_registration
 from updating.models.state import NOMINAL, Role, State
-from updating.prediction.misplaced import moved, per_place, squared_wave_numbers
+from updating.prediction.misplaced import beyond_slopes, moved, per_place, squared_wave_numbers
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import relabelled
 
@@ -152,19 +152,18 @@ class Places:
     def left_out(self, now: Prediction, level: FloatArray) -> FloatArray:
         """Return the variance of what slopes leave out where no prediction is linearised anew, (n_frf, n_modes) [-].
 
-        A point that is off by dx moves by half of its curvature times dx^2 besides, whose mean square is 3 sigma^4 / 4
-        times that of the curvature. That of a fixed transducer all constants of a mode have in common, see
-        :mod:`updating.likelihood.nodes`. A baseline had the same points.
+        That of a fixed transducer all constants of a mode share, see :mod:`updating.likelihood.nodes`. A baseline had the
+        same points.
         """
         test = self.setting.measured
         if self.marks or self.setting.before is not None or not len(test.seen):
             return np.zeros_like(level)
         doubts = [self._seen] if test.roving == "seen" and not test.bare else self._hit
-        fourth = 0.75 * np.sum([doubt[rank, 0] ** 4 for rank, doubt in doubts], axis=0)
+        bent = np.sum([beyond_slopes(doubt[rank, 0]) for rank, doubt in doubts], axis=0)
         curvature = np.sum(squared_wave_numbers(test, now), axis=0) ** 2 * np.mean(
             (level * now.constants) ** 2, axis=0
         )
-        return np.asarray(fourth[:, None] * curvature)
+        return np.asarray(bent[:, None] * curvature)
 
     @cached_property
     def movable(self) -> IntArray:

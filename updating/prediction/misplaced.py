@@ -113,6 +113,17 @@ def per_place(rank: IntArray, sigma: FloatArray, along: FloatArray) -> FloatArra
     return columns.reshape(n_frf * n_modes, -1)
 
 
+def beyond_slopes(sigma: FloatArray | float) -> FloatArray:
+    """Return the mean square of dx^2 / 2, by which shapes of curvature 1 leave their slopes, 3 sigma^4 / 4 [m^4].
+
+    Parameters
+    ----------
+    sigma : array or float
+        Standard deviation of dx [m].
+    """
+    return np.asarray(0.75 * np.asarray(sigma) ** 4)
+
+
 def squared_wave_numbers(test: Measured, now: Prediction) -> FloatArray:
     """Return k^2 of each mode along each axis, where one end of the FRFs roves, (dim, n_modes) [1/m^2]."""
     ends = {"hit": (now.hit, now.hit_slopes), "seen": (now.seen, now.seen_slopes)}

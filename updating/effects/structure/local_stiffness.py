@@ -131,7 +131,7 @@ class LocalStiffness(EitherWay):
         if predictor.spec.kind == "beam":
             _, lengths, compliance = _profile(predictor, values)
             return {"compliance": (float(lengths @ compliance), "m")}
-        structure = predictor.reduced.fielded
+        structure = predictor.reduced.fielded.finer
         lost = values["loss"] * shares(structure, values, soft=SOFT)
         low, high = (values["y"] + side * extents(values)[1] / 2 for side in (-1, 1))
         across = min(high, predictor.spec.width) - max(low, 0.0)

@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.prediction.misplaced import best_levels, moved, per_place, squared_wave_numbers, stated_levels
+from updating.prediction.misplaced import (
+    best_levels,
+    beyond_slopes,
+    moved,
+    per_place,
+    squared_wave_numbers,
+    stated_levels,
+)
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 from updating.update.data.whitening import Whitening, whitening
@@ -86,7 +93,7 @@ def _misplaced(test: Measured, at: Prediction) -> tuple[FloatArray, list[FloatAr
         per_place(test.seen, doubts, by.sensor),
     ]
     waves = np.sum(squared_wave_numbers(test, at), axis=0)
-    left_out = 0.75 * test.position_sigma**4 * waves
+    left_out = beyond_slopes(test.position_sigma) * waves
     if test.absolute and not test.bare:
         roving, fixed = (at.hit, by.sensor) if test.fixed == "seen" else (at.seen, by.first)
         size = np.sqrt(left_out * (waves * by.constants**2 + np.sum(fixed**2, axis=0)))
