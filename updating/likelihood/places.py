@@ -152,8 +152,8 @@ class Places:
     def left_out(self, now: Prediction, level: FloatArray) -> FloatArray:
         """Return the variance of what slopes leave out where no prediction is linearised anew, (n_frf, n_modes) [-].
 
-        That of a fixed transducer all constants of a mode share, see :mod:`updating.likelihood.nodes`. A baseline had the
-        same points.
+        That of a fixed transducer all constants of a mode share, see :mod:`updating.likelihood.nodes`. A baseline had
+        the same points.
         """
         test = self.setting.measured
         if self.marks or self.setting.before is not None or not len(test.seen):

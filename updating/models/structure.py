@@ -42,7 +42,7 @@ MOST_CELLS = 40
 
 
 RESOLVED = 32
-"""About so many elements along a side resolve soft places of a tenth of it: their shift is right to some 3 %, and to
+"""About so many elements along a side resolve soft places of an eighth of it: their shifts are right to some 6 %, and to
 14 % on half as many."""
 
 
