@@ -42,8 +42,8 @@ MOST_CELLS = 40
 
 
 RESOLVED = 32
-"""About so many elements along a side resolve soft places of an eighth of it: their shifts are right to some 6 %, and to
-14 % on half as many."""
+"""About so many elements along a side resolve soft places of an eighth of it: their shifts are right to some 6 %, and
+to 14 % on half as many."""
 
 
 @dataclass(frozen=True, eq=False)
