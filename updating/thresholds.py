@@ -182,6 +182,10 @@ BENT_COURSE = 0.15
 REJECTED_FIT = 0.003
 """For the search, and the default of the rule ``rejected_fit`` [-]."""
 
+HOPELESS_FIT = 1e-12
+"""What fits worse than this is not integrated by predictions [-]: it is rejected, wherever its samples lie. Doubled: no
+answer changes."""
+
 DOUBTED_FIT = 0.02
 """For the search, and the default of the rule ``doubted_fit`` [-]."""
 

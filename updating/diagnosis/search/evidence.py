@@ -13,7 +13,7 @@ from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, highest, maximise
 from updating.diagnosis.search.goodness import p_value
-from updating.diagnosis.search.points import Point, evaluate, evaluate_many
+from updating.diagnosis.search.points import Point, evaluate_many
 from updating.diagnosis.search.ridges import along_ridge
 from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, least
 from updating.problem.candidate import Candidate
@@ -23,6 +23,7 @@ from updating.thresholds import (
     AT_REST,
     CLIMBS,
     DRAFT_SAMPLES,
+    HOPELESS_BEHIND,
     LEAST_ON_LINE,
     MOST_AT_ONCE,
     PEAK_BEHIND,
@@ -99,6 +100,7 @@ def explain(
     candidate: Candidate,
     *,
     starts: list[FloatArray] | None = None,
+    begun: Sequence[Point] | None = None,
     density: int = 16,
     laplace_only: bool = False,
     maximisations: int = CLIMBS,
@@ -114,6 +116,8 @@ def explain(
         Effects.
     starts : list of (k,) arrays, optional
         Prior quantiles to start from; left out, the effects' own.
+    begun : sequence of Point, optional
+        To where :func:`attempts` led from them, where these are made already.
     density : int
         Samples at a time: this many times two to the number of parameters.
     laplace_only : bool
@@ -128,18 +132,33 @@ def explain(
     -------
     Explanation
     """
-    places = _beginnings(problem, candidate) if starts is None else starts
-    if len(places[0]) == 0:
-        point = evaluate(problem, candidate, np.zeros(0))
-        evidence = point.marginal.log_likelihood + candidate.log_weight
-        return Explanation(candidate, evidence, point, np.zeros((1, 0)), np.ones(1))
-    peaks = _peaks(problem, candidate, places, maximisations, bar)
+    if begun is None:
+        places = _beginnings(problem, candidate) if starts is None else starts
+        begun = evaluate_many(problem, candidate, places)
+        if len(places) > maximisations:
+            begun = _after_few_steps(problem, candidate, begun, bar)[:maximisations]
+    if len(begun[0].coordinates) == 0:
+        evidence = _height(begun[0]) + candidate.log_weight
+        return Explanation(candidate, evidence, begun[0], np.zeros((1, 0)), np.ones(1))
+    peaks = _peaks(problem, candidate, begun, bar)
     if not peaks[0].point.possible:
-        return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
+        return Explanation(candidate, -np.inf, peaks[0].point, begun[0].coordinates[None, :], np.ones(1))
     if laplace_only:
         draft = draw_posterior(partial(_parabolas, peaks), about(peaks), DRAFT_SAMPLES, most=DRAFT_SAMPLES)
         return _explanation(candidate, peaks[0].point, draft, peaks, laplace_only=True)
     return _sampled(problem, candidate, peaks, density)
+
+
+def attempts(problem: DiagnosisProblem, candidate: Candidate, *, bar: float = -np.inf) -> list[Point]:
+    """Return to where a few steps from a candidate's own starts lead, the best first: from there its search goes on.
+
+    Parameters
+    ----------
+    problem, candidate, bar
+        As in :func:`explain`.
+    """
+    points = evaluate_many(problem, candidate, _beginnings(problem, candidate))
+    return _after_few_steps(problem, candidate, points, bar)[:CLIMBS]
 
 
 def either(plain: Explanation, fuller: Explanation) -> Explanation:
@@ -236,28 +255,31 @@ def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
     return np.asarray(np.max(found, axis=0))
 
 
-def _peaks(
-    problem: DiagnosisProblem, candidate: Candidate, places: list[FloatArray], maximisations: int, bar: float
-) -> list[Peak]:
-    swap = _exchanged(problem, candidate)
-    if len(places) > maximisations:
-        evaluations = evaluate_many(problem, candidate, places)
-        heights = np.array([evaluation.marginal.log_likelihood for evaluation in evaluations])
-        nearest = np.argsort(heights)[::-1][:STARTS_TRIED]
-        if _on_a_line(places):
-            nearest = nearest[_maxima(heights)[nearest]]
-        tried = [highest(problem, candidate, evaluations[i], rounds=STEPS_TRIED, bar=bar) for i in nearest]
-        tried.sort(key=lambda p: -p.marginal.log_likelihood)
-        peaks = [
-            maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried, swap)[:maximisations]
-        ]
-    else:
-        peaks = [maximise(problem, candidate, place, bar=bar) for place in places]
-    found = [peaks[i] for i in _distinct([peak.point for peak in peaks], swap)]
-    top = found[0].point.marginal.log_likelihood
-    return [
-        peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < PEAK_BEHIND
-    ]
+def _after_few_steps(
+    problem: DiagnosisProblem, candidate: Candidate, starts: Sequence[Point], bar: float
+) -> list[Point]:
+    """Return to where a few steps from the best starts lead, those in different places, the best first."""
+    if len(starts[0].coordinates) == 0:
+        return list(starts)
+    heights = np.array([_height(point) for point in starts])
+    nearest = np.argsort(heights)[::-1][:STARTS_TRIED]
+    if len(starts) > CLIMBS and _on_a_line([point.coordinates for point in starts]):
+        nearest = nearest[_maxima(heights)[nearest]]
+    tried = [highest(problem, candidate, starts[i], rounds=STEPS_TRIED, bar=bar) for i in nearest]
+    return [tried[i] for i in _distinct(tried, _exchanged(problem, candidate))]
+
+
+def _peaks(problem: DiagnosisProblem, candidate: Candidate, begun: Sequence[Point], bar: float) -> list[Peak]:
+    """Return the maxima above some points, the highest first; of what stays hopelessly below the bar, one alone."""
+    peaks: list[Peak] = []
+    for point in sorted(begun, key=_height, reverse=True):
+        reached = max(_height(one) for one in (point, *(peak.point for peak in peaks)))
+        if peaks and bar - reached >= HOPELESS_BEHIND:
+            break
+        peaks.append(maximise(problem, candidate, point, bar=bar))
+    found = [peaks[i] for i in _distinct([peak.point for peak in peaks], _exchanged(problem, candidate))]
+    top = _height(found[0].point)
+    return [peak for peak in found if peak is found[0] or top - _height(peak.point) < PEAK_BEHIND]
 
 
 def _on_a_line(places: list[FloatArray]) -> bool:

@@ -91,8 +91,11 @@ def highest(
     rounds: int = 20,
     bar: float = -np.inf,
 ) -> Point:
-    """Return where :func:`maximise` ends, without the curvature there, which costs an evaluation per parameter."""
-    return _ascend(problem, candidate, start, keep, rounds, bar)[0]
+    """Return where steps uphill lead, without the curvature there, which costs an evaluation per parameter.
+
+    It is enough to choose between starts: whether tolerances would rest higher from their own middle is left open.
+    """
+    return _uphill(problem, candidate, start, keep, rounds, bar)[0]
 
 
 def _ascend(
@@ -142,7 +145,8 @@ def _uphill(
         if not np.isfinite(step).all():
             break
         there = np.clip(point.coordinates + step, 0.0, 1.0)
-        trial = evaluate(problem, candidate, there, keep=keep, about=point.about)
+        about = point.foreseen(slope.columns @ (there - point.coordinates), keep)
+        trial = evaluate(problem, candidate, there, keep=keep, about=about)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
         promised = float(step @ gradient - 0.5 * step @ slope.normal @ step)
         stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.gaussian import Marginal, marginals
+from updating.likelihood.gaussian import Marginal, gaussian, marginals
 from updating.problem.candidate import Candidate
 from updating.thresholds import FARTHEST_TOLERANCE, RELINEARISATIONS, STRAINED_LINEARISATION
 
@@ -40,6 +40,17 @@ class Point:
     def possible(self) -> bool:
         """Whether the model has a finite prediction there."""
         return bool(np.isfinite(self.marginal.log_likelihood))
+
+    def foreseen(self, change: FloatArray, keep: BoolArray | None) -> FloatArray | None:
+        """Return about which nuisances to linearise where the prediction is another by ``change`` (n,).
+
+        The most probable ones, as far as this linearisation foresees them; None where this one is about none.
+        """
+        if self.about is None or not np.isfinite(change).all():
+            return self.about
+        changed = gaussian(replace(self.comparison, residual=change), (self.marginal.scale,), keep)
+        first = np.zeros(1, dtype=np.int64)
+        return _within_reach((self.marginal.shift - changed.shift(first, first)[0])[self.comparison.moving])
 
     @property
     def left_over(self) -> FloatArray:
@@ -106,7 +117,11 @@ def _about(point: Point) -> FloatArray:
 
 
 def _wanted(point: Point) -> FloatArray:
-    return np.clip(point.marginal.shift[point.comparison.moving], -FARTHEST_TOLERANCE, FARTHEST_TOLERANCE)
+    return _within_reach(point.marginal.shift[point.comparison.moving])
+
+
+def _within_reach(shift: FloatArray) -> FloatArray:
+    return np.clip(shift, -FARTHEST_TOLERANCE, FARTHEST_TOLERANCE)
 
 
 def _linearised(

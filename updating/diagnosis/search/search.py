@@ -10,18 +10,28 @@ effect's prior, and their evidence is added up.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.compared import Search, compare, extreme_parameters, merged
-from updating.diagnosis.search.evidence import Explanation, either, explain, finish, single_cause
+from updating.diagnosis.search.evidence import (
+    Explanation,
+    attempts,
+    either,
+    explain,
+    finish,
+    single_cause,
+)
 from updating.diagnosis.search.fewer import with_parts
 from updating.diagnosis.search.larger import one_more
 from updating.diagnosis.search.odd import with_odd_data
+from updating.diagnosis.search.points import Point
 from updating.diagnosis.search.sets import pairs_of
 from updating.diagnosis.search.theory import with_theory_named
-from updating.effects import Effect, Lack, Obstacle, Variant
+from updating.effects import Effect, Lack, Obstacle
 from updating.problem.candidate import Candidate
 from updating.problem.theory_shows import theory_shows
 from updating.steps import SILENT, SingleCause, Steps
@@ -30,6 +40,7 @@ from updating.thresholds import (
     DOUBT_BEYOND_NOISE,
     DOUBTED_FIT,
     FINISHING_ROUNDS,
+    HOPELESS_FIT,
     PROBABLE_BEHIND,
     REJECTED_FIT,
     WELL_FITTED,
@@ -68,19 +79,19 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect], steps: Steps = 
     both = _on_both(problem, effects, nothing)
     if both and _beneath(problem):
         nothing = either(nothing, explain(problem, Candidate(fuller=True)))
-    found = _with_odd(
-        problem, [], [nothing, *_singles(problem, effects, nothing, steps, both=both)], steps, "single causes"
-    )
+    singles = [nothing, *_singles(problem, effects, nothing, steps, both=both)]
+    found = _with_odd(problem, [], singles, steps, "single causes", least=WELL_FITTED)
     far = not _explained(problem, found, well=True)
     if far or _by_its_doubt(problem, found):
         steps.begin("comparing pairs of causes")
         pairs = pairs_of(problem, _as_stated(found), steps, far=far)
-        found = _with_odd(problem, found, pairs, steps, "pairs of causes")
+        found = _with_odd(problem, found, pairs, steps, "pairs of causes", least=DOUBTED_FIT)
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):
             steps.begin(f"comparing sets of {causes} causes")
             larger = one_more(problem, _as_stated(found), causes, steps)
-            found = _with_odd(problem, found, larger, steps, f"sets of {causes} causes")
+            what = f"sets of {causes} causes"
+            found = _with_odd(problem, found, larger, steps, what, least=DOUBTED_FIT)
     found = _finished(problem, with_parts(problem, found))
     if both and not _beneath(problem) and len(problem.specimens) == 1:
         found = _finished(problem, with_theory_named(problem, found, effects))
@@ -95,12 +106,17 @@ def _with_odd(
     drafts: list[Explanation],
     steps: Steps,
     what: str,
+    *,
+    least: float,
 ) -> list[Explanation]:
-    """Add drafts, as the data are stated and with outliers, and finish what is within reach."""
+    """Add drafts, as the data are stated and with outliers, and finish what is within reach and may end the search.
+
+    It ends where something fits as well as ``least`` [-].
+    """
     steps.begin(f"integrating the probable {what}")
-    together = _finished(problem, found + drafts)
+    together = _finished(problem, found + drafts, least=least)
     new = together[len(found) :]
-    return _finished(problem, together + with_odd_data(problem, new)) if new else together
+    return _finished(problem, together + with_odd_data(problem, new), least=least) if new else together
 
 
 def _as_stated(found: list[Explanation]) -> list[Explanation]:
@@ -134,14 +150,20 @@ def _by_its_doubt(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
     return False
 
 
-def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
-    """Evaluate by predictions what Laplace approximations left within reach of the best; the rest stays as drafted."""
+def _finished(
+    problem: DiagnosisProblem, found: list[Explanation], *, least: float = HOPELESS_FIT
+) -> list[Explanation]:
+    """Evaluate by predictions what Laplace approximations left within reach of the best; the rest stays as drafted.
+
+    So does all where nothing within reach fits as well as ``least`` [-]: no evidence decides between what is rejected.
+    """
     finished = list(found)
     for evaluation in range(FINISHING_ROUNDS):
         rows = compare(finished)
         bar = max(row.probability for row in rows) * np.exp(-WITHIN_REACH)
-        left = [i for i, row in enumerate(rows) if row.explanation.laplace_only and row.probability > bar]
-        if not left:
+        near = [i for i, row in enumerate(rows) if row.probability > bar]
+        left = [i for i in near if rows[i].explanation.laplace_only]
+        if not left or all(rows[i].p_value < least for i in near):
             break
         left.sort(key=lambda i: -rows[i].probability)
         for i in left if evaluation else left[:1]:  # the best first: it may put the others out of reach
@@ -174,25 +196,34 @@ def _on_both(problem: DiagnosisProblem, effects: list[Effect], nothing: Explanat
 def _singles(
     problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, steps: Steps, *, both: bool
 ) -> list[Explanation]:
-    """Evaluate every form of every effect, the simple ones first: what they reach is the bar for the others."""
-    forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
-    sizes = [len(problem.parameters(Candidate((effect,), chosen=(form,)))) for effect, form in forms]
-    order = np.argsort(sizes, kind="stable")
+    """Evaluate every form of every effect: all a few steps uphill, the simple ones first, then to the top, best first.
+
+    What one reaches is the bar for the others.
+    """
+    forms = [Candidate((effect,), chosen=(form,)) for effect in effects for form in problem.forms(effect)]
+    forms.sort(key=lambda form: len(problem.parameters(form)))
+    costs = [float(1 + len(problem.parameters(form))) ** 2 for form in forms]
     bar, found = nothing.best.marginal.log_likelihood, []
     steps.found(SingleCause("", 0.0, nothing.p_value))
-    for effect, form in steps.each([forms[i] for i in order], [float(1 + sizes[i]) ** 2 for i in order]):
-        found.append(_single(problem, effect, form, bar, both=both))
+    work = steps.each([*forms, *forms], costs + costs)
+    begun = []
+    for form in islice(work, len(forms)):
+        begun.append(attempts(problem, form, bar=bar))
+        bar = max(bar, *(point.marginal.log_likelihood for point in begun[-1]))
+    best_first = sorted(range(len(forms)), key=lambda i: -begun[i][0].marginal.log_likelihood)
+    for i, _ in zip(best_first, work, strict=True):
+        found.append(_single(problem, forms[i], begun[i], bar, both=both))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
-        steps.found(single_cause(effect.name, found, nothing))
+        steps.found(single_cause(forms[i].names[0], found, nothing))
     return found
 
 
 def _single(
-    problem: DiagnosisProblem, effect: Effect, form: Variant, bar: float, *, both: bool
+    problem: DiagnosisProblem, form: Candidate, begun: Sequence[Point], bar: float, *, both: bool
 ) -> Explanation:
     """Evaluate one form of an effect, where the theory falls short on either theory."""
-    plain = explain(problem, Candidate((effect,), chosen=(form,)), laplace_only=True, bar=bar)
-    if not both or effect.fuller:
+    plain = explain(problem, form, begun=begun, laplace_only=True, bar=bar)
+    if not both or form.effects[0].fuller:
         return plain
-    fuller = Candidate((effect,), fuller=True, chosen=(form,))
+    fuller = replace(form, fuller=True)
     return either(plain, explain(problem, fuller, starts=plain.tops, laplace_only=True, bar=bar))
