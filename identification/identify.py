@@ -17,6 +17,7 @@ from acquisition.quantities import hertz
 from identification.assembled import PoleErrors, assemble
 from identification.band.uninformed import uninformed_modes
 from identification.fit.course import course_of, resampled
+from identification.fit.drift import blurred_by
 from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
 from identification.fit.equations.residues import synthesise
@@ -26,7 +27,7 @@ from identification.fit.search.manual_selection import nearest_modes
 from identification.line_shapes import fit_shaped, with_shape
 from identification.model import ModalModel
 from identification.orders import charted
-from identification.poles import ESTIMATORS
+from identification.poles import ESTIMATORS, PoleEstimator
 from identification.poles.stabilisation import StabilisationChart
 
 _KEPT = 8  # fits with modes named by the user that are kept: so many picks can be undone without a new fit
@@ -231,18 +232,32 @@ def _prepared(
     data, points_rejected = _usable(frfs, band)
     data, course, foreign = _of_one_structure(data)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
-    even = data if course is None else resampled(data, course)
-    chart, start = charted(even, ESTIMATORS[method], band=limits, order=order)
-    if len(start) == 0:
-        raise EstimationError(
-            f"{frfs.source}: no pole is stable between {limits[0]:g} and {limits[1]:g} Hz as the order "
-            "rises; widen the band, raise the order or check the FRFs"
-        )
-    _begin(progress, f"fitting {counted(len(start), 'candidate')} to {counted(len(data.values), 'FRF')}")
-    fitted = fit_shaped(data, start, band=limits, course=course)
+    chart, fitted = _fitted(data, course, ESTIMATORS[method], limits, order, progress)
+    if course is None and blurred_by(fitted.drift, inside(fitted.fit.poles, limits, data.df)):
+        chart, fitted = _fitted(data, fitted.drift.common, ESTIMATORS[method], limits, order, progress)
     if fitted.frfs.line_shape is not None and data.line_shape is None:
         data = with_shape(data, fitted.frfs.line_shape.kind)
     return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)
+
+
+def _fitted(
+    data: FrfSet,
+    course: FloatArray | None,
+    estimate: PoleEstimator,
+    band: tuple[float, float],
+    order: int | None,
+    progress: Callable[[str], None] | None,
+) -> tuple[StabilisationChart, Fitted]:
+    """Return the stabilisation chart and the fit of the poles that are stable, along the course of the test."""
+    even = data if course is None else resampled(data, course)
+    chart, start = charted(even, estimate, band=band, order=order)
+    if len(start) == 0:
+        raise EstimationError(
+            f"{data.source}: no pole is stable between {band[0]:g} and {band[1]:g} Hz as the order "
+            "rises; widen the band, raise the order or check the FRFs"
+        )
+    _begin(progress, f"fitting {counted(len(start), 'candidate')} to {counted(len(data.values), 'FRF')}")
+    return chart, fit_shaped(data, start, band=band, course=course)
 
 
 def _of_one_structure(data: FrfSet) -> tuple[FrfSet, FloatArray | None, Foreign]:

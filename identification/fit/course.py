@@ -1,8 +1,8 @@
-"""A drift over the test by more than the width of peaks, found before any pole is.
+"""A drift over the test, found before any pole is.
 
 From one fit to the next shifts are found where the peaks of all FRFs overlap (:mod:`identification.fit.drift`). Where
-they do not, one mode is a row of peaks, which pass for as many modes. What all have in common then shows in the spectra
-alone: over the logarithm of frequency a common factor is a common distance.
+the sharp ones do not, one mode is a row of peaks, which pass for as many modes, or is lost. What all have in common
+then shows in the spectra alone: over the logarithm of frequency a common factor is a common distance.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import uniform_filter1d
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.drift import LARGEST, measuring_order
 from identification.fit.equations import basis
@@ -41,8 +41,7 @@ FINEST = 1e-4
 def course_of(frfs: FrfSet) -> FloatArray | None:
     """Return by what the frequencies of each FRF lie beside those in the middle of the test, relative, (n_frf,) [-].
 
-    None where peaks overlap as they are, so that a fit finds the shifts, or where no line over measuring order brings
-    them together.
+    None where no line over measuring order brings peaks together.
     """
     order = measuring_order(frfs)
     count = int(order.max()) + 1
@@ -52,11 +51,11 @@ def course_of(frfs: FrfSet) -> FloatArray | None:
     peaks = _peaks(frfs, step)
     place = np.linspace(-0.5, 0.5, count)
     halves = peaks[: count // 2].sum(axis=0), peaks[-(count // 2) :].sum(axis=0)
-    if abs(_lag(*halves, round(LARGEST / step))) <= _width(peaks):
+    if _lag(*halves, round(LARGEST / step)) == 0:
         return None
     most = round(2 * LARGEST / step)
     rates = np.arange(-most, most + 1)
-    clarity = np.array([_clarity(peaks, np.rint(rate * place)) for rate in rates])
+    clarity = _clarities(peaks, rates)
     best = int(clarity.argmax())
     if clarity[best] < CLEARER * clarity[most]:
         return None
@@ -92,9 +91,17 @@ def _moved(peaks: FloatArray, lags: FloatArray) -> FloatArray:
     return np.asarray(np.take_along_axis(peaks, np.clip(at, 0, peaks.shape[1] - 1), axis=1))
 
 
-def _clarity(peaks: FloatArray, lags: FloatArray) -> float:
-    """Return the mean square of the mean of moved rows [-]."""
-    return float(np.mean(_moved(peaks, lags).mean(axis=0) ** 2))
+def _clarities(peaks: FloatArray, rates: IntArray) -> FloatArray:
+    """Return the square of the sum of rows, added up, once they are moved along a line, for each of its rates [-].
+
+    It is what all pairs of rows have in common at their distance on the line: one autocorrelation over both axes.
+    """
+    count, length = len(peaks), peaks.shape[1] + int(np.abs(rates).max())
+    spectrum = np.fft.fft(np.fft.rfft(peaks, length, axis=1), 2 * count, axis=0)
+    alike = np.fft.irfft(np.fft.ifft(np.abs(spectrum) ** 2, axis=0)[:count], length, axis=1)
+    apart = np.arange(1, count)
+    lags = np.rint(rates[:, None] * apart / (count - 1)).astype(np.int64)
+    return np.asarray(alike[0, 0] + 2.0 * alike[apart, lags].sum(axis=1))
 
 
 def _lag(first: FloatArray, second: FloatArray, reach: int) -> int:
@@ -102,12 +109,6 @@ def _lag(first: FloatArray, second: FloatArray, reach: int) -> int:
     length = 2 * len(first)
     product = np.fft.rfft(first, length).conj() * np.fft.rfft(second, length)
     return int(np.roll(np.fft.irfft(product, length), reach)[: 2 * reach + 1].argmax()) - reach
-
-
-def _width(peaks: FloatArray) -> int:
-    """Return at what distance peaks no longer overlap by half [steps]; 0 if they do at any."""
-    n, half = peaks.shape[1], 0.5 * float(np.vdot(peaks, peaks))
-    return next((k for k in range(1, n) if np.vdot(peaks[:, : n - k], peaks[:, k:]) < half), 0)
 
 
 def resampled(frfs: FrfSet, course: FloatArray) -> FrfSet:

@@ -103,6 +103,15 @@ class Drift:
         )
 
 
+def blurred_by(drift: Drift, modes: BoolArray) -> bool:
+    """Return whether all frequencies moved together by more than half the width of the sharpest of some (n_modes,).
+
+    A mode that is not known yet is then a row of peaks, and may be missed.
+    """
+    half_width = np.abs(drift.poles.real / drift.poles)[modes]
+    return bool(modes.any() and np.ptp(drift.common) > half_width.min())
+
+
 def setups(frfs: FrfSet) -> IntArray:
     """Return which FRFs were measured together, as a number for each, shape (n_frf,).
 

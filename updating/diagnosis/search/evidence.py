@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -23,6 +24,7 @@ from updating.thresholds import (
     AT_REST,
     CLIMBS,
     DRAFT_SAMPLES,
+    ENOUGH_SAMPLES,
     HOPELESS_BEHIND,
     LEAST_ON_LINE,
     MOST_AT_ONCE,
@@ -174,7 +176,9 @@ def _beginnings(problem: DiagnosisProblem, candidate: Candidate) -> list[FloatAr
     return placed or problem.starts(candidate)
 
 
-def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int = 32) -> Explanation:
+def finish(
+    problem: DiagnosisProblem, explanation: Explanation, *, density: int = 32, share: float = 1.0
+) -> Explanation:
     """Evaluate a Laplace approximation by predictions, from the maxima it found.
 
     Parameters
@@ -185,13 +189,25 @@ def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int 
         A draft.
     density : int
         As in :func:`explain`.
+    share : float
+        Its probability beside that of the best. What is improbable needs its evidence less closely: the sum of all is
+        known best for its samples where each has as many as its share asks for (Neyman 1934) [-].
     """
-    found = _sampled(problem, explanation.candidate, list(explanation.peaks), density)
+    peaks = list(explanation.peaks)
+    # ten times its share: a draft may be too low by as much
+    enough = max(ENOUGH_SAMPLES * min(1.0, 10.0 * share), 2.0 * least(explanation.samples.shape[1]))
+    found = _sampled(problem, explanation.candidate, peaks, density, enough=enough)
     return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
 
 
 def _sampled(
-    problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int, *, at_once: int = 16
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    peaks: list[Peak],
+    density: int,
+    *,
+    enough: float = ENOUGH_SAMPLES,
+    at_once: int = 16,
 ) -> Explanation:
     """Return the evidence by predictions at samples about maxima, ``at_once`` at a time to bound the memory.
 
@@ -215,12 +231,12 @@ def _sampled(
             known.extend((point.coordinates, point.about) for point in points)
         return np.array(heights)
 
-    count = min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE)
-    found = draw_posterior(log_likelihood, about(peaks), count)
+    count = min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE, math.ceil(2 * enough))
+    found = draw_posterior(log_likelihood, about(peaks), count, enough=enough)
     if found.effective < least(len(peaks[0].gradient)) and _height(best) > _height(top) + AT_REST:
         peaks = [maximise(problem, candidate, best), *peaks]
         best = max(best, peaks[0].point, key=_height)
-        found = draw_posterior(log_likelihood, about(peaks), count)
+        found = draw_posterior(log_likelihood, about(peaks), count, enough=enough)
     return _explanation(candidate, best, found, peaks)
 
 

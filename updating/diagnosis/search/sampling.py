@@ -143,6 +143,7 @@ def draw_posterior(
     count: int,
     *,
     most: int = MOST_SAMPLES,
+    enough: float = ENOUGH_SAMPLES,
 ) -> Posterior:
     """Draw from a mixture and from what it is fitted to until enough samples carry the weight.
 
@@ -159,6 +160,8 @@ def draw_posterior(
         Samples drawn in each round.
     most : int
         Most samples in all rounds.
+    enough : float
+        As how many independent samples they are to be worth [-].
     """
     drawn: list[Mixture] = []
     samples, height = np.zeros((0, mixture.means.shape[1])), np.zeros(0)
@@ -174,7 +177,7 @@ def draw_posterior(
             return Posterior(total, samples, np.full(len(samples), 1 / len(samples)), 0.0)
         number = effective(np.exp(log_weight - total))
         flat = _flattened(log_weight, least(samples.shape[1]))
-        if number >= ENOUGH_SAMPLES or (1 + len(drawn)) * count > most:
+        if number >= enough or (1 + len(drawn)) * count > most:
             return Posterior(total, samples, flat, number)
         mixture = mixture.fitted(samples, flat)
 

@@ -160,14 +160,15 @@ def _finished(
     finished = list(found)
     for evaluation in range(FINISHING_ROUNDS):
         rows = compare(finished)
-        bar = max(row.probability for row in rows) * np.exp(-WITHIN_REACH)
+        top = max(row.probability for row in rows)
+        bar = top * np.exp(-WITHIN_REACH)
         near = [i for i, row in enumerate(rows) if row.probability > bar]
         left = [i for i in near if rows[i].explanation.laplace_only]
         if not left or all(rows[i].p_value < least for i in near):
             break
         left.sort(key=lambda i: -rows[i].probability)
         for i in left if evaluation else left[:1]:  # the best first: it may put the others out of reach
-            finished[i] = finish(problem, finished[i])
+            finished[i] = finish(problem, finished[i], share=rows[i].probability / top)
     return finished
 
 

@@ -54,12 +54,22 @@ class Orthotropy(Effect):
         )
         coupling = (
             "from woven carbon and unidirectional laminates (0.15 to 0.3) over rolled sheet (0.85 to 1.15) to layers "
-            "at 45 degrees (2.5), below the limit at which bending into a saddle needs no energy"
+            "at 45 degrees (2.5), below the limit at which bending into a saddle needs no energy; the least stands for "
+            "none as well, of corrugated sheet or some woods"
         )
         return (
             Parameter("ratio", "-", 1 / 25, 25.0, why, log=True),
             Parameter("shear_ratio", "-", 0.15, 2.5, shear, log=True, default=HUBER),
-            Parameter("coupling", "-", 0.15, self._most(predictor), coupling, log=True, default=HUBER),
+            Parameter(
+                "coupling",
+                "-",
+                0.15,
+                self._most(predictor),
+                coupling,
+                log=True,
+                default=HUBER,
+                natural=("low",),
+            ),
         )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
