@@ -231,7 +231,7 @@ def _sampled(
             known.extend((point.coordinates, point.about) for point in points)
         return np.array(heights)
 
-    count = min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE, math.ceil(2 * enough))
+    count = min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE, 2 ** math.ceil(math.log2(2 * enough)))
     found = draw_posterior(log_likelihood, about(peaks), count, enough=enough)
     if found.effective < least(len(peaks[0].gradient)) and _height(best) > _height(top) + AT_REST:
         peaks = [maximise(problem, candidate, best), *peaks]
