@@ -12,7 +12,7 @@ from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.evidence import attempts, explain, finish
 from updating.diagnosis.search.fit import maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.points import Point, evaluate
@@ -242,3 +242,29 @@ def test_a_pair_has_the_parameters_of_both() -> None:
     assert len(state.mass) == 1
     assert both.locations(problem.predictor, [0.25, 0.75, 0.2, 0.5]) == ((0.376, 0.0, 0.0),)
     assert Case("x", COARSE, trial()).accepted == ()
+
+
+def test_what_is_improbable_has_fewer_samples_and_the_same_evidence() -> None:
+    problem = diagnosis_problem(trial(E=0.8, gain=1.3, noise=12.0), {"E": 0.03})
+    both = candidate("E", "calibration_gain")
+    draft = explain(problem, both, laplace_only=True)
+    whole, rough = finish(problem, draft), finish(problem, draft, share=1e-3)
+    assert len(rough.samples) < 0.5 * len(whole.samples)
+    assert rough.settled and whole.settled
+    assert rough.log_evidence == pytest.approx(whole.log_evidence, abs=0.5)
+    assert rough.log_evidence == pytest.approx(brute(problem, both, 40), abs=0.5)
+
+
+def test_a_search_from_attempts_ends_where_one_from_the_starts_does() -> None:
+    problem = diagnosis_problem(trial(E=0.9))
+    for name in ("E", "clamp_rotation", "local_stiffness"):
+        begun = attempts(problem, candidate(name))
+        heights = [point.marginal.log_likelihood for point in begun]
+        assert heights == sorted(heights, reverse=True)
+        found = explain(problem, candidate(name), begun=begun, laplace_only=True)
+        direct = explain(problem, candidate(name), laplace_only=True)
+        assert found.best.marginal.log_likelihood == pytest.approx(
+            direct.best.marginal.log_likelihood, abs=0.05
+        )
+        hopeless = explain(problem, candidate(name), begun=begun, laplace_only=True, bar=1e4)
+        assert len(hopeless.peaks) == 1
