@@ -234,7 +234,8 @@ def _prepared(
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
     chart, fitted = _fitted(data, course, ESTIMATORS[method], limits, order, progress)
     if course is None and blurred_by(fitted.drift, inside(fitted.fit.poles, limits, data.df)):
-        chart, fitted = _fitted(data, fitted.drift.common, ESTIMATORS[method], limits, order, progress)
+        again = _fitted(data, fitted.drift.common, ESTIMATORS[method], limits, order, progress)
+        chart, fitted = min((chart, fitted), again, key=lambda one: one[1].left_unexplained())
     if fitted.frfs.line_shape is not None and data.line_shape is None:
         data = with_shape(data, fitted.frfs.line_shape.kind)
     return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)

@@ -87,6 +87,10 @@ class Fitted:
         ratio = np.abs(self.residual) ** 2 / self.variance
         return float(np.median(ratio.mean(axis=1) / np.maximum(1.0 - self.absorbed, 0.02).mean(axis=1)))
 
+    def left_unexplained(self) -> float:
+        """Return the logarithm of the power that the fit leaves as noise, its mean over all FRFs and lines [-]."""
+        return float(np.mean(np.log(self.variance)) + np.log(self.excess()))
+
 
 def fit_candidates(
     frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], course: FloatArray | None = None
