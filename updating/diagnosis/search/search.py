@@ -204,7 +204,8 @@ def _singles(
     forms = [Candidate((effect,), chosen=(form,)) for effect in effects for form in problem.forms(effect)]
     forms.sort(key=lambda form: len(problem.parameters(form)))
     costs = [float(1 + len(problem.parameters(form))) ** 2 for form in forms]
-    bar, found = nothing.best.marginal.log_likelihood, []
+    bar = nothing.best.marginal.log_likelihood
+    found: dict[int, Explanation] = {}
     steps.found(SingleCause("", 0.0, nothing.p_value))
     work = steps.each([*forms, *forms], costs + costs)
     begun = []
@@ -213,10 +214,10 @@ def _singles(
         bar = max(bar, *(point.marginal.log_likelihood for point in begun[-1]))
     best_first = sorted(range(len(forms)), key=lambda i: -begun[i][0].marginal.log_likelihood)
     for i, _ in zip(best_first, work, strict=True):
-        found.append(_single(problem, forms[i], begun[i], bar, both=both))
-        bar = max(bar, found[-1].best.marginal.log_likelihood)
-        steps.found(single_cause(forms[i].names[0], found, nothing))
-    return found
+        found[i] = _single(problem, forms[i], begun[i], bar, both=both)
+        bar = max(bar, found[i].best.marginal.log_likelihood)
+        steps.found(single_cause(forms[i].names[0], list(found.values()), nothing))
+    return [found[i] for i in range(len(forms))]
 
 
 def _single(
