@@ -194,8 +194,8 @@ def finish(
         known best for its samples where each has as many as its share asks for (Neyman 1934) [-].
     """
     peaks = list(explanation.peaks)
-    # ten times its share: a draft may be too low by as much
-    enough = max(ENOUGH_SAMPLES * min(1.0, 10.0 * share), 2.0 * least(explanation.samples.shape[1]))
+    # a hundred times its share: a draft may be too low by a tenth of that, and what holds some percent may be named
+    enough = max(ENOUGH_SAMPLES * min(1.0, 100.0 * share), 2.0 * least(explanation.samples.shape[1]))
     found = _sampled(problem, explanation.candidate, peaks, density, enough=enough)
     return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
 
