@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -234,8 +235,9 @@ def _prepared(
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
     chart, fitted = _fitted(data, course, ESTIMATORS[method], limits, order, progress)
     if course is None and blurred_by(fitted.drift, inside(fitted.fit.poles, limits, data.df)):
-        again = _fitted(data, fitted.drift.common, ESTIMATORS[method], limits, order, progress)
-        chart, fitted = min((chart, fitted), again, key=lambda one: one[1].left_unexplained())
+        with suppress(EstimationError):  # no pole along it: the course is none, and the first fit stands
+            again = _fitted(data, fitted.drift.common, ESTIMATORS[method], limits, order, progress)
+            chart, fitted = min((chart, fitted), again, key=lambda one: one[1].left_unexplained())
     if fitted.frfs.line_shape is not None and data.line_shape is None:
         data = with_shape(data, fitted.frfs.line_shape.kind)
     return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)

@@ -183,8 +183,7 @@ REJECTED_FIT = 0.003
 """For the search, and the default of the rule ``rejected_fit`` [-]."""
 
 HOPELESS_FIT = 1e-12
-"""What fits worse than this is not integrated by predictions [-]: it is rejected, wherever its samples lie. Doubled: no
-answer changes."""
+"""What fits worse than this is not integrated by predictions [-]: it is rejected, wherever its samples lie."""
 
 DOUBTED_FIT = 0.02
 """For the search, and the default of the rule ``doubted_fit`` [-]."""
@@ -332,9 +331,6 @@ narrow peak gets two thirds as many samples."""
 
 SAMPLE_FREEDOM = 5
 """Degrees of freedom of the t-distributions that samples are drawn from: heavy tails, a finite variance."""
-
-MOST_AT_ONCE = 256
-"""Most samples drawn in a round, each a prediction. Doubled: more are drawn than are needed."""
 
 MOST_SAMPLES = 1024
 """Most samples drawn in all. Doubled: evidence errs by 0.7 of what it did, in twice the time."""

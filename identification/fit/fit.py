@@ -89,7 +89,8 @@ class Fitted:
 
     def left_unexplained(self) -> float:
         """Return the logarithm of the power that the fit leaves as noise, its mean over all FRFs and lines [-]."""
-        return float(np.mean(np.log(self.variance)) + np.log(self.excess()))
+        tiny = np.finfo(float).tiny
+        return float(np.mean(np.log(np.maximum(self.variance, tiny))) + np.log(max(self.excess(), tiny)))
 
 
 def fit_candidates(

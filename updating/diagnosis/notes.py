@@ -11,7 +11,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction
-from updating.thresholds import ENOUGH_SAMPLES, NEGLIGIBLE_PROBABILITY
+from updating.thresholds import NEGLIGIBLE_PROBABILITY
 
 
 def on_rules(rules: DecisionRules) -> list[str]:
@@ -73,9 +73,9 @@ def _on_samples(found: Search) -> list[str]:
     """Return which of the two most probable sets rest on few samples."""
     return [
         f"the probability and the intervals of {' + '.join(row.names) or 'no cause'} are rough: they come from "
-        f"{row.explanation.effective:.0f} effective samples; {ENOUGH_SAMPLES:.0f} are needed"
+        f"{row.explanation.effective:.0f} effective samples; {row.explanation.wanted:.0f} are needed"
         for row in found.compared[:2]
         if row.probability > NEGLIGIBLE_PROBABILITY
         and row.explanation.samples.shape[1]
-        and 0 < row.explanation.effective < ENOUGH_SAMPLES
+        and 0 < row.explanation.effective < row.explanation.wanted
     ]

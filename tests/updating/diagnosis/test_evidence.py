@@ -12,6 +12,8 @@ from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
+from updating.diagnosis.notes import _on_samples
+from updating.diagnosis.search.compared import Compared, Search
 from updating.diagnosis.search.evidence import attempts, explain, finish
 from updating.diagnosis.search.fit import maximise
 from updating.diagnosis.search.goodness import p_value
@@ -251,6 +253,8 @@ def test_what_is_improbable_has_fewer_samples_and_the_same_evidence() -> None:
     whole, rough = finish(problem, draft), finish(problem, draft, share=1e-3)
     assert len(rough.samples) < 0.5 * len(whole.samples)
     assert rough.settled and whole.settled
+    assert draft.lacks_samples(1e-3) and rough.lacks_samples(1.0)
+    assert not rough.lacks_samples(1e-3) and not whole.lacks_samples(1.0)
     assert rough.log_evidence == pytest.approx(whole.log_evidence, abs=0.5)
     assert rough.log_evidence == pytest.approx(brute(problem, both, 40), abs=0.5)
 
@@ -268,3 +272,14 @@ def test_a_search_from_attempts_ends_where_one_from_the_starts_does() -> None:
         )
         hopeless = explain(problem, candidate(name), begun=begun, laplace_only=True, bar=1e4)
         assert len(hopeless.peaks) == 1
+
+
+def test_a_warning_states_that_samples_are_few_where_they_are_fewer_than_wanted() -> None:
+    problem = diagnosis_problem(trial(E=0.9))
+    nothing, found = explain(problem, Candidate()), explain(problem, candidate("E"))
+    for effective, wanted, warned in ((30.0, 100.0, True), (30.0, 20.0, False), (0.0, 0.0, False)):
+        one = replace(found, effective=effective, wanted=wanted)
+        row = Compared(explanation=one, probability=0.02, p_value=1.0, as_stated=1.0)
+        warnings = _on_samples(Search(nothing, (row,), {}))
+        assert bool(warnings) == warned
+        assert not warned or "30 effective samples; 100 are needed" in warnings[0]

@@ -54,7 +54,7 @@ def explained(problem: SpecimenProblem, name: str) -> Explanation:
     """As the search does it: a first look, then a closer one at the best place alone."""
     candidate = Candidate((LIBRARY[name],))
     first = explain(problem, candidate)
-    return explain(problem, candidate, starts=[first.best.coordinates], density=64)
+    return explain(problem, candidate, starts=[first.best.coordinates])
 
 
 @pytest.mark.long

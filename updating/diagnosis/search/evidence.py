@@ -16,7 +16,7 @@ from updating.diagnosis.search.fit import Peak, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.points import Point, evaluate_many
 from updating.diagnosis.search.ridges import along_ridge
-from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, least
+from updating.diagnosis.search.sampling import Posterior, about, draw_posterior, enough, least
 from updating.problem.candidate import Candidate
 from updating.problem.screening import basins
 from updating.steps import SingleCause
@@ -27,7 +27,6 @@ from updating.thresholds import (
     ENOUGH_SAMPLES,
     HOPELESS_BEHIND,
     LEAST_ON_LINE,
-    MOST_AT_ONCE,
     PEAK_BEHIND,
     SAME_PEAK,
     STARTS_TRIED,
@@ -59,6 +58,8 @@ class Explanation:
         Logarithm of what the evidence of the other theory adds, relative to this one's [-].
     effective : float
         As how many independent samples of the posterior the weighted ones are worth; nothing of a draft [-].
+    wanted : float
+        As how many they were to be worth; nothing of a draft [-].
     """
 
     candidate: Candidate
@@ -70,6 +71,12 @@ class Explanation:
     laplace_only: bool = False
     other: float = 0.0
     effective: float = 0.0
+    wanted: float = 0.0
+
+    def lacks_samples(self, share: float) -> bool:
+        """Return whether it is a draft, or was given too few for its share of the best one's probability."""
+        wanted = enough(self.samples.shape[1], share)
+        return self.laplace_only or (self.wanted < wanted and 0 < self.effective < wanted)
 
     @property
     def settled(self) -> bool:
@@ -103,7 +110,6 @@ def explain(
     *,
     starts: list[FloatArray] | None = None,
     begun: Sequence[Point] | None = None,
-    density: int = 16,
     laplace_only: bool = False,
     maximisations: int = CLIMBS,
     bar: float = -np.inf,
@@ -120,8 +126,6 @@ def explain(
         Prior quantiles to start from; left out, the effects' own.
     begun : sequence of Point, optional
         To where :func:`attempts` led from them, where these are made already.
-    density : int
-        Samples at a time: this many times two to the number of parameters.
     laplace_only : bool
         Whether the samples are weighted by the parabolas through the peaks instead of by predictions: enough to
         separate the hopeless from the rest.
@@ -148,7 +152,7 @@ def explain(
     if laplace_only:
         draft = draw_posterior(partial(_parabolas, peaks), about(peaks), DRAFT_SAMPLES, most=DRAFT_SAMPLES)
         return _explanation(candidate, peaks[0].point, draft, peaks, laplace_only=True)
-    return _sampled(problem, candidate, peaks, density)
+    return _sampled(problem, candidate, peaks)
 
 
 def attempts(problem: DiagnosisProblem, candidate: Candidate, *, bar: float = -np.inf) -> list[Point]:
@@ -176,9 +180,7 @@ def _beginnings(problem: DiagnosisProblem, candidate: Candidate) -> list[FloatAr
     return placed or problem.starts(candidate)
 
 
-def finish(
-    problem: DiagnosisProblem, explanation: Explanation, *, density: int = 32, share: float = 1.0
-) -> Explanation:
+def finish(problem: DiagnosisProblem, explanation: Explanation, *, share: float = 1.0) -> Explanation:
     """Evaluate a Laplace approximation by predictions, from the maxima it found.
 
     Parameters
@@ -187,16 +189,11 @@ def finish(
         Test and model.
     explanation : Explanation
         A draft.
-    density : int
-        As in :func:`explain`.
     share : float
-        Its probability beside that of the best. What is improbable needs its evidence less closely: the sum of all is
-        known best for its samples where each has as many as its share asks for (Neyman 1934) [-].
+        Its probability beside that of the best: what is improbable needs its evidence less closely [-].
     """
-    peaks = list(explanation.peaks)
-    # a hundred times its share: a draft may be too low by a tenth of that, and what holds some percent may be named
-    enough = max(ENOUGH_SAMPLES * min(1.0, 100.0 * share), 2.0 * least(explanation.samples.shape[1]))
-    found = _sampled(problem, explanation.candidate, peaks, density, enough=enough)
+    wanted = enough(explanation.samples.shape[1], share)
+    found = _sampled(problem, explanation.candidate, list(explanation.peaks), wanted=wanted)
     return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
 
 
@@ -204,9 +201,8 @@ def _sampled(
     problem: DiagnosisProblem,
     candidate: Candidate,
     peaks: list[Peak],
-    density: int,
     *,
-    enough: float = ENOUGH_SAMPLES,
+    wanted: float = ENOUGH_SAMPLES,
     at_once: int = 16,
 ) -> Explanation:
     """Return the evidence by predictions at samples about maxima, ``at_once`` at a time to bound the memory.
@@ -231,13 +227,13 @@ def _sampled(
             known.extend((point.coordinates, point.about) for point in points)
         return np.array(heights)
 
-    count = min(density * 2 ** len(peaks[0].gradient), MOST_AT_ONCE, 2 ** math.ceil(math.log2(2 * enough)))
-    found = draw_posterior(log_likelihood, about(peaks), count, enough=enough)
+    count = 2 ** math.ceil(math.log2(2 * wanted))  # about half of a good proposal's samples are independent
+    found = draw_posterior(log_likelihood, about(peaks), count, wanted=wanted)
     if found.effective < least(len(peaks[0].gradient)) and _height(best) > _height(top) + AT_REST:
         peaks = [maximise(problem, candidate, best), *peaks]
         best = max(best, peaks[0].point, key=_height)
-        found = draw_posterior(log_likelihood, about(peaks), count, enough=enough)
-    return _explanation(candidate, best, found, peaks)
+        found = draw_posterior(log_likelihood, about(peaks), count, wanted=wanted)
+    return replace(_explanation(candidate, best, found, peaks), wanted=wanted)
 
 
 def _height(point: Point) -> float:

@@ -137,13 +137,22 @@ def least(parameters: int) -> int:
     return 2 * (1 + parameters)
 
 
+def enough(parameters: int, share: float = 1.0) -> float:
+    """Return as how many independent samples a posterior of some share of the best one's probability is to be worth.
+
+    The sum of all evidence is known best for its samples where each has as many as its share asks for (Neyman 1934);
+    what holds a tenth as much as the best has all. None has fewer than twice the :func:`least`.
+    """
+    return max(ENOUGH_SAMPLES * min(1.0, 10.0 * share), 2.0 * least(parameters))
+
+
 def draw_posterior(
     log_likelihood: Callable[[FloatArray], FloatArray],
     mixture: Mixture,
     count: int,
     *,
     most: int = MOST_SAMPLES,
-    enough: float = ENOUGH_SAMPLES,
+    wanted: float = ENOUGH_SAMPLES,
 ) -> Posterior:
     """Draw from a mixture and from what it is fitted to until enough samples carry the weight.
 
@@ -160,7 +169,7 @@ def draw_posterior(
         Samples drawn in each round.
     most : int
         Most samples in all rounds.
-    enough : float
+    wanted : float
         As how many independent samples they are to be worth [-].
     """
     drawn: list[Mixture] = []
@@ -177,7 +186,7 @@ def draw_posterior(
             return Posterior(total, samples, np.full(len(samples), 1 / len(samples)), 0.0)
         number = effective(np.exp(log_weight - total))
         flat = _flattened(log_weight, least(samples.shape[1]))
-        if number >= enough or (1 + len(drawn)) * count > most:
+        if number >= wanted or (1 + len(drawn)) * count > most:
             return Posterior(total, samples, flat, number)
         mixture = mixture.fitted(samples, flat)
 

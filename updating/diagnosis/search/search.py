@@ -163,7 +163,7 @@ def _finished(
         top = max(row.probability for row in rows)
         bar = top * np.exp(-WITHIN_REACH)
         near = [i for i, row in enumerate(rows) if row.probability > bar]
-        left = [i for i in near if rows[i].explanation.laplace_only]
+        left = [i for i in near if rows[i].explanation.lacks_samples(rows[i].probability / top)]
         if not left or all(rows[i].p_value < least for i in near):
             break
         left.sort(key=lambda i: -rows[i].probability)
