@@ -227,7 +227,7 @@ def _sampled(
             known.extend((point.coordinates, point.about) for point in points)
         return np.array(heights)
 
-    count = 2 ** math.ceil(math.log2(2 * wanted))  # about half of a good proposal's samples are independent
+    count = 2 ** math.floor(math.log2(2 * wanted))  # about half of a good proposal's samples are independent
     found = draw_posterior(log_likelihood, about(peaks), count, wanted=wanted)
     if found.effective < least(len(peaks[0].gradient)) and _height(best) > _height(top) + AT_REST:
         peaks = [maximise(problem, candidate, best), *peaks]
