@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from acquisition.arrays import AnyArray
+from acquisition.errors import in_one_line
 
 RATIO = 30
 """Bytes that one packed byte may become [-]: numbers as text shrink three- to twentyfold, measured ones to half; twice
@@ -58,7 +59,7 @@ def members(path: Path) -> dict[str, bytes]:
     # zipfile raises NotImplementedError for ways of packing that it does not know, RuntimeError for a password
     except (ValueError, KeyError, OSError, EOFError, NotImplementedError, RuntimeError, zlib.error,
             zipfile.BadZipFile) as error:  # fmt: skip
-        raise ValueError(" ".join(str(error).split())[:200]) from error
+        raise ValueError(in_one_line(error)) from error
 
 
 def array_of(raw: bytes) -> AnyArray:

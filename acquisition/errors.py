@@ -17,6 +17,11 @@ class EstimationError(ModalkitError):
     """The data do not carry what was asked of them."""
 
 
+def in_one_line(error: Exception, *, longest: int = 200) -> str:
+    """Return what the error of a library states, in one line of at most so many characters."""
+    return " ".join(str(error).split())[:longest]
+
+
 def cannot_open(path: object, error: Exception) -> InputError:
     """Return the error of a file that the system does not open, with the reason that it gives."""
     reason = getattr(error, "strerror", None) or error

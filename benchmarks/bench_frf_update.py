@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from time import process_time
 
 import numpy as np
-from bench_recovery import Specimen, draw, statement
+from bench_recovery import Specimen, draw, share_text
 from scipy.sparse.linalg import splu
 
 from acquisition import Dof, EstimationError, Geometry, HammerPlan, ModalSystem, estimate_frfs, hammer_test
@@ -206,12 +206,12 @@ def coverage(seeds: int, *, theory: bool, verbose: bool) -> None:
     for name, parts in kinds.items():
         pooled = np.concatenate(parts)
         print(
-            f"{name}: covered by 95 % intervals {statement(np.abs(pooled) < 1.96)}, "
+            f"{name}: covered by 95 % intervals {share_text(np.abs(pooled) < 1.96)}, "
             f"median |pull| {np.median(np.abs(pooled)):.2f}"
         )
     pooled = np.concatenate([np.concatenate(parts) for parts in kinds.values()])
     print(
-        f"both: {statement(np.abs(pooled) < 1.96)}; without a result {lost}, not converged {unconverged} of {seeds}"
+        f"both: {share_text(np.abs(pooled) < 1.96)}; without a result {lost}, not converged {unconverged} of {seeds}"
     )
 
 

@@ -238,7 +238,7 @@ def interval(hits: int, trials: int) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def statement(within: np.ndarray) -> str:
+def share_text(within: np.ndarray) -> str:
     """Write a coverage with its interval."""
     low, high = interval(int(within.sum()), len(within))
     return f"{100 * within.mean():.1f} % of {len(within)} ({100 * low:.1f} to {100 * high:.1f} %)"
@@ -298,10 +298,10 @@ def main() -> None:
             )
     pooled = np.concatenate(every)
     print(
-        f"covered by 95 % intervals, all parameters: {statement(np.concatenate(within))}; "
+        f"covered by 95 % intervals, all parameters: {share_text(np.concatenate(within))}; "
         f"r.m.s. pull {np.sqrt(np.mean(pooled**2)):.2f}"
     )
-    print(f"  of these, determined by the data: {statement(np.concatenate(determined))}")
+    print(f"  of these, determined by the data: {share_text(np.concatenate(determined))}")
     print(f"  specimens without a result: {lost} of {chosen.seeds}; with several solutions: {several}")
     pairs = np.array([named(seed) for seed in range(max(1, chosen.seeds // 4))])
     print(f"E and density of everything named as a pair: {pairs.sum()} of {len(pairs)}")

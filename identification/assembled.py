@@ -94,7 +94,7 @@ def assemble(
         noise = np.sqrt(np.maximum(alone**2 - np.sum(shared**2, axis=2), noise**2))
     shapes = mode_shapes(data, constants, alone, poles=poles)
     scatter = np.sqrt(separation.scatter[own, 1, 1])
-    statement = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
+    doubted = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
     trend = frequency_trend(data, fitted.drift.at(poles), constants)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(
@@ -114,7 +114,7 @@ def assemble(
         band=band,
         frfs=data,
         chart=chart,
-        warnings=shapes.warnings + _warnings(fitted, poles, trend) + statement,
+        warnings=shapes.warnings + _warnings(fitted, poles, trend) + doubted,
         points_rejected=points_rejected,
         carried=None if np.shares_memory(fitted.frfs.values, data.values) else fitted.frfs,
         trend=trend,
@@ -170,7 +170,7 @@ def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple
                 "middle of the test"
             )
     if fitted.frfs.line_shape is not None:
-        notes.append(fitted.frfs.line_shape.statement(stated=fitted.frfs.window is not None))
+        notes.append(fitted.frfs.line_shape.note(stated=fitted.frfs.window is not None))
     if not fitted.fit.converged:
         notes.append(doubts.not_at_rest(fitted.fit, poles))
     left = fitted.excess()

@@ -286,12 +286,12 @@ def _selected(prepared: Prepared, fitted: Fitted, add: Sequence[float], drop: Se
         why = "once the modes named are dropped" if drop else "in the band: the pole found is background"
         raise EstimationError(f"{data.source}: no mode is left {why}; widen the band")
     result = assemble(data, fitted, errors, modes, prepared.chart, limits, prepared.points_rejected)
-    statement = (
+    warnings = (
         *prepared.warnings,
         *_struck(struck),
         *uninformed_modes(prepared.frfs, result.modal.frequency),
     )
-    return replace(result, warnings=result.warnings + statement) if statement else result
+    return replace(result, warnings=result.warnings + warnings) if warnings else result
 
 
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:

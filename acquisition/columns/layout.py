@@ -174,8 +174,8 @@ def read_layout(path: Path | str) -> Layout:
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); give the layout file") from error
     except UnicodeDecodeError as error:
-        statement = not_utf8(Path(path), Path(path).read_bytes())
-        raise InputError(statement or f"{path}: not a TOML file but binary data") from error
+        message = not_utf8(Path(path), Path(path).read_bytes())
+        raise InputError(message or f"{path}: not a TOML file but binary data") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not a TOML file: {error}") from error
     return layout_from(table, source=str(path))

@@ -43,7 +43,7 @@ class LineShape:
     kind: Kind
     duration: float
 
-    def statement(self, *, stated: bool) -> str:
+    def note(self, *, stated: bool) -> str:
         """Return what to say of FRFs that have it.
 
         Parameters

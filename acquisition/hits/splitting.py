@@ -138,11 +138,11 @@ def split_hits(
             f"record; {ELSE}"
         )
     count = sum(p.count for p in points)
-    statement = (
+    how = (
         f"{test.source}: long records were split into {count} hits of {length / test.rate:.4g} s "
         f"(trigger {level:.3g} N, {lead / test.rate:.3g} s before it)"
     )
-    return replace(test, points=points), (statement, *messages)
+    return replace(test, points=points), (how, *messages)
 
 
 def _too_short(test: HammerTest, lead: int, length: int, proposed: bool) -> str:

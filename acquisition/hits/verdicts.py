@@ -164,8 +164,8 @@ def decide(
             reasons = v.reasons if v.used else (*v.reasons, "used by the user's decision")
             decided.append(replace(v, used=True, reasons=reasons))
         elif name in unwanted:
-            statement = "left out by the user" + ("" if v.used else ", who agrees")
-            decided.append(replace(v, used=False, reasons=(*v.reasons, statement)))
+            reason = "left out by the user" + ("" if v.used else ", who agrees")
+            decided.append(replace(v, used=False, reasons=(*v.reasons, reason)))
         else:
             decided.append(v)
     return tuple(decided)

@@ -99,9 +99,9 @@ def read_mat_frfs(path: Path | str, layout: MatLayout, plan: Layout) -> FrfSet:
     expected = tuple(sizes[axis] for axis in layout.axes)
     lacking = [axis for axis in AXES if axis not in layout.axes and sizes[axis] != 1]
     if values.shape != expected or lacking:
-        statement = " x ".join(f"{sizes[a]} {a}s" for a in layout.axes)
+        wanted = " x ".join(f"{sizes[a]} {a}s" for a in layout.axes)
         raise InputError(
-            f"{path}: {layout.frfs!r} has shape {values.shape}, but the layout states {statement}"
+            f"{path}: {layout.frfs!r} has shape {values.shape}, but the layout states {wanted}"
             + (f" and several {lacking[0]}s without an axis" if lacking else "")
             + "; correct axes, responses or references of [mat]"
         )

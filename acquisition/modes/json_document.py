@@ -110,10 +110,8 @@ def _shape(mode: Mapping[str, Any], where: str) -> dict[Dof, tuple[float, float,
         node, direction = (_whole(part, key, where) for key in ("node", "direction"))
         dof, sign = Dof(node, abs(direction)), -1.0 if direction < 0 else 1.0
         if abs(direction) > 6 or dof in shape:
-            statement = "is given twice" if dof in shape else "is none"
-            raise InputError(
-                f"{where}: node {node}, direction {direction} {statement}; directions are -6 to 6"
-            )
+            fault = "is given twice" if dof in shape else "is none"
+            raise InputError(f"{where}: node {node}, direction {direction} {fault}; directions are -6 to 6")
         re, im = (sign * _number(part, key, where, needed=True) for key in ("re", "im"))
         shape[dof] = re, im, _number(part, "sigma", where)
     return shape

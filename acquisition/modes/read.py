@@ -10,7 +10,7 @@ import pandas as pd
 from acquisition.columns.blocks import Style
 from acquisition.dof import Dof
 from acquisition.encoding import not_utf8
-from acquisition.errors import InputError
+from acquisition.errors import InputError, in_one_line
 from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
 from acquisition.modes.checks import check_frequencies, checked
@@ -155,15 +155,15 @@ def _table(path: Path) -> pd.DataFrame:
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
     except UnicodeDecodeError as error:
-        statement = (
+        message = (
             not_utf8(path, path.read_bytes())
             or f"{path}: binary data, not a table of modes; give a .csv of text"
         )
-        raise InputError(statement) from error
+        raise InputError(message) from error
     except (ValueError, pd.errors.ParserError) as error:
-        statement = " ".join(str(error).split())
+        reason = in_one_line(error)
         raise InputError(
-            f"{path}: is not a table of columns separated by {NAMES[separator]} ({statement})"
+            f"{path}: is not a table of columns separated by {NAMES[separator]} ({reason})"
         ) from None
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise InputError(f"{path}: lines have more values than the header has names; name every column")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from acquisition.arrays import AnyArray
-from acquisition.errors import InputError
+from acquisition.errors import InputError, in_one_line
 from acquisition.libraries import library
 from acquisition.recorders.arrays import Named
 from acquisition.recorders.channels import LISTED
@@ -152,5 +152,5 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _damaged(path: Path, error: Exception) -> InputError:
-    statement = " ".join(str(error).split())[:200]
-    return InputError(f"{path}: not a whole HDF5 file ({statement}); export it again")
+    reason = in_one_line(error)
+    return InputError(f"{path}: not a whole HDF5 file ({reason}); export it again")

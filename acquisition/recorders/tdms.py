@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from acquisition.errors import InputError
+from acquisition.errors import InputError, in_one_line
 from acquisition.libraries import library
 from acquisition.recorders.recorded import Recorded
 
@@ -42,9 +42,9 @@ def records(path: Path) -> list[Recorded]:
                 [_Channel(group.name, c) for c in group.channels() if len(c)] for group in file.groups()
             ]
     except Exception as error:  # the library raises what a damaged file happens to lead to
-        statement = " ".join(str(error).split())[:200]
+        reason = in_one_line(error)
         raise InputError(
-            f"{path}: not a whole TDMS file ({type(error).__name__}: {statement}); record or export it again"
+            f"{path}: not a whole TDMS file ({type(error).__name__}: {reason}); record or export it again"
         ) from error
     groups = [group for group in groups if group]
     if not groups:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from acquisition.arrays import AnyArray
-from acquisition.errors import InputError
+from acquisition.errors import InputError, in_one_line
 from acquisition.recorders.recorded import Recorded
 
 
@@ -32,8 +32,8 @@ def records(path: Path) -> list[Recorded]:
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of notes, which are passed over
             rate, samples = wavfile.read(path)
     except (ValueError, TypeError, ArithmeticError, struct.error, EOFError, NameError, MemoryError) as error:
-        statement = " ".join(str(error).split())[:200]
-        raise InputError(f"{path}: not a whole WAV file ({statement}); record or export it again") from error
+        reason = in_one_line(error)
+        raise InputError(f"{path}: not a whole WAV file ({reason}); record or export it again") from error
     if not rate or not samples.size:
         raise InputError(f"{path}: no samples in it, or a rate of 0 Hz; record or export it again")
     columns = _relative(samples.reshape(len(samples), -1)).T

@@ -23,22 +23,22 @@ def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
     frequency : (n_modes,) array
         Frequencies found [Hz].
     """
-    coherent, statement = best_coherence(frfs), []
+    coherent, notes = best_coherence(frfs), []
     if coherent is not None:
         lost = frequency[np.interp(frequency, frfs.frequency, coherent) < LOST]
         if len(lost):
-            statement.append(
+            notes.append(
                 f"mode(s) at {_named(lost)} lie where no FRF has a coherence over {LOST:g}: the force is too weak "
                 "there, and they may be noise; leave them out with drop, or end the band below them"
             )
     filtered = frequency[frequency > _passed(frfs)]
     if len(filtered):
-        statement.append(
+        notes.append(
             f"mode(s) at {_named(filtered)} lie above {hertz(_passed(frfs))} (sampling rate / {PASSED:g}), where the "
             "anti-aliasing filter falls off: an alias from beyond half the sampling rate may look like a mode; sample "
             "faster, or leave them out with drop"
         )
-    return tuple(statement)
+    return tuple(notes)
 
 
 def _named(frequency: FloatArray) -> str:

@@ -126,13 +126,13 @@ def about_drive_points(
 
 def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
     """State what a negative drive-point constant means: a passive structure has none."""
-    statement = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
+    found = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
     if others:
         return Consequential(
-            f"{statement} and a positive one in others: hit and sensor cannot have been at one place, "
+            f"{found} and a positive one in others: hit and sensor cannot have been at one place, "
             "so it cannot scale the mode shapes; check the node numbers"
         )
-    return Consequential(f"{statement}: check the direction signs of hammer and sensor")
+    return Consequential(f"{found}: check the direction signs of hammer and sensor")
 
 
 def _listed(numbers: IntArray) -> str:

@@ -214,7 +214,7 @@ def run_part(found: Found, run: RunCommand) -> Part:
             run(found.path.parent, ["part", found.path.name, "--json", str(out)])
             return Part(found.name, found.digest, json.loads(out.read_text(encoding="utf-8")), None)
         except CommandFailedError as error:
-            return Part(found.name, found.digest, None, error.statement.removeprefix(f"{found.path.name}: "))
+            return Part(found.name, found.digest, None, error.message.removeprefix(f"{found.path.name}: "))
         except EstimationError as error:
             return Part(found.name, found.digest, None, str(error))
         except (OSError, ValueError) as error:

@@ -122,8 +122,8 @@ def put_in(scene: Scene, row: Row) -> Scene | None:
 def _values(name: str, row: Row) -> dict[str, Any]:
     prefix = f"{name}."
     found: dict[str, Any] = {
-        key.removeprefix(prefix): statement.value
-        for key, statement in row.parameters.items()
+        key.removeprefix(prefix): estimate.value
+        for key, estimate in row.parameters.items()
         if key.startswith(prefix)
     }
     for key, points in row.points.items():

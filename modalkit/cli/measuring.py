@@ -94,7 +94,7 @@ def inspect(
     ] = None,
 ) -> None:
     """List the content of a file, and its faults."""
-    statement = ProcessingOptions(decay=decay)
+    options = ProcessingOptions(decay=decay)
     if write_layout is not None:
         layout = _written_layout(files, layout, write_layout)
     with reading(JUDGING) as work:
@@ -107,7 +107,7 @@ def inspect(
         long = [holds_several_hits(test) for test in content.tests]
         single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
         warnings: list[str] = []
-        judged = numbered([judge_hits(stated(test, statement, warnings)) for test in single])
+        judged = numbered([judge_hits(stated(test, options, warnings)) for test in single])
     if any(long):
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
@@ -178,7 +178,7 @@ def frf(
     """Estimate FRFs with coherence from hits, and write them as UFF."""
     check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
     check_folder(figures)
-    statement = processing(
+    options = processing(
         decay=decay,
         window_on=window_on,
         window=window,
@@ -189,7 +189,7 @@ def frf(
         sensors=sensor_mass,
     )
     with reading(AVERAGING) as work:
-        processed = read_frfs(files, processing=statement, progress=work.read)
+        processed = read_frfs(files, processing=options, progress=work.read)
     show_hits(processed.hits)
     show_table(processed.frfs.table(), "FRFs")
     show_rejected(processed.hits)
@@ -233,7 +233,7 @@ def identify(
         reads=read_by(files, layout),
     )
     check_folder(figures)
-    statement = processing(
+    options = processing(
         decay=decay,
         window_on=window_on,
         window=window,
@@ -245,7 +245,7 @@ def identify(
         frf_window=frf_window,
     )
     with reading(IDENTIFYING) as work:
-        processed, model = _identified(files, statement, band, order, (add or (), drop or ()), work)
+        processed, model = _identified(files, options, band, order, (add or (), drop or ()), work)
     if isinstance(model, Modes) or processed is None:
         show_modes(model)
     else:
@@ -263,7 +263,7 @@ def identify(
 
 def _identified(
     files: list[Path],
-    statement: ProcessingOptions,
+    options: ProcessingOptions,
     band: tuple[float, float] | None,
     order: int | None,
     named: tuple[Sequence[float], Sequence[float]],
@@ -275,7 +275,7 @@ def _identified(
         from modalkit.study.read import read_study
         from modalkit.workflow.case import process
 
-        if statement != ProcessingOptions():
+        if options != ProcessingOptions():
             raise StudyError(
                 f"{files[0]}: these options are not for studies; state them under [test] in the study"
             )
@@ -288,7 +288,7 @@ def _identified(
             progress=work.read,
             stage=work.begin,
         )
-    found = read(files, processing=statement, progress=work.read)
+    found = read(files, processing=options, progress=work.read)
     if not isinstance(found, Modes):
         return found, found.identify(band=band, order=order, add=add, drop=drop, progress=work.begin)
     if order is not None or add or drop:

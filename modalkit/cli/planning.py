@@ -13,7 +13,7 @@ from modalkit.cli.progress import working
 from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
 from modalkit.planning import DesignForecast, Forecast, forecast
-from modalkit.planning.document import family_of, statement, to_json
+from modalkit.planning.document import family_of, severity_text, to_json
 from modalkit.planning.note import brings, note, offered
 from modalkit.planning.own import bench_of
 from modalkit.planning.separability import NONE, SEEN, SURE
@@ -94,7 +94,7 @@ def show_note(name: str, found: Forecast) -> None:
     out.print(name, style="bold", markup=False)
     for line in note(found):
         out.print(line, markup=False)
-    out.print(f"Assumed: {'; '.join(bench.statement)}", markup=False)
+    out.print(f"Assumed: {'; '.join(bench.assumptions)}", markup=False)
     reasons: dict[str, list[str]] = {}
     for key, why in bench.not_forecast.items():
         reasons.setdefault(why, []).append(key)
@@ -129,7 +129,7 @@ def _thresholds(now: DesignForecast) -> pd.DataFrame:
         sizes = (limit.seen, limit.separated, limit.sure, limit.clear)
         words = [family.amount(q) if math.isfinite(q) else "never" for q in sizes]
         if not family.at:
-            words[0] = statement(now, name, limit.seen) or "never"
+            words[0] = severity_text(now, name, limit.seen) or "never"
         keys = ("seen from", "separated from", "surely from", "asked about")
         row = {"effect": name, **dict(zip(keys, words, strict=True))}
         rows.append({**row, "nearest": _nearest(now, name), "expected": now.outcomes[name].kind})

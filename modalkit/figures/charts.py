@@ -339,13 +339,13 @@ def update_figure(
     if (factors := factors_chart(parameters or {})) is not None:
         charts.append(replace(factors, title="Parameters, over their nominal values"))
     sizes = [percent(float(np.sqrt(np.mean(v**2)))) for v in (b, a)]
-    statement = f"Updating takes the frequency error from {sizes[0]} to {sizes[1]} r.m.s."
+    title = f"Updating takes the frequency error from {sizes[0]} to {sizes[1]} r.m.s."
     parts = [
         title,
         counted(len(f), "mode"),
         counted(len(parameters or {}), "parameter") if parameters else "",
     ]
-    return sheet_figure(Sheet(statement, "  ·  ".join(filter(None, parts)), charts))
+    return sheet_figure(Sheet(title, "  ·  ".join(filter(None, parts)), charts))
 
 
 def planning_figure(found: Forecast) -> Figure:

@@ -83,13 +83,13 @@ def write_modes(
         raise InputError(
             f"{path}: a data set of modes needs shapes, but these modes have none; write them as .csv or .json"
         )
-    statement = modes.warnings if warnings is None else warnings
+    shown = modes.warnings if warnings is None else warnings
     ending = path.suffix.lower()
     if ending == ".csv":
         write_text(path, modes_csv(modes.modal))
     elif ending == ".json":
         from modalkit.output.documents import modes_document
 
-        write_json(path, modes_document(modes, hits, statement))
+        write_json(path, modes_document(modes, hits, shown))
     else:
         write_uff(path, modal=modes.modal, geometry=modes.modal.geometry, title=title)

@@ -69,9 +69,9 @@ def _cause(diagnosis: Diagnosis) -> str:
         return " ".join(part for part in parts if part)
     if diagnosis.level == "mechanism":
         return shared_text(diagnosis)
-    statement = "these data cannot separate: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
+    text = "these data cannot separate: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
-    return f"{statement}; {twin.why}" if twin else statement
+    return f"{text}; {twin.why}" if twin else text
 
 
 def _suspected(row: Ranked | None) -> str:
@@ -179,14 +179,14 @@ def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
         return f"a cause outside the library ({probability(diagnosis.something_else.probability)})"
     if row is None:
         return " + ".join(names)
-    statement = " + ".join(name + _at(row, i) for i, name in enumerate(names))
+    text = " + ".join(name + _at(row, i) for i, name in enumerate(names))
     numbers = [e for e in row.parameters.values() if e.unit != NAME]
     if len(numbers) != 1 or len(names) > 1:
-        return statement
+        return text
     (estimate,) = numbers
     if not isinstance(estimate.value, float):
-        return statement
-    return f"{statement} ({'x ' if estimate.unit == '-' else ''}{estimate.bare})"
+        return text
+    return f"{text} ({'x ' if estimate.unit == '-' else ''}{estimate.bare})"
 
 
 def _at(row: Ranked, index: int) -> str:
@@ -369,5 +369,5 @@ def _from(pair: tuple[tuple[str, ...], tuple[str, ...]]) -> str:
 
 
 def _either(sets: list[tuple[str, ...]]) -> str:
-    statement = [" + ".join(names) for names in sets]
-    return statement[0] if len(statement) == 1 else f"{', '.join(statement[:-1])} and {statement[-1]}"
+    listed = [" + ".join(names) for names in sets]
+    return listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} and {listed[-1]}"

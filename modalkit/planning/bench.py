@@ -24,7 +24,7 @@ class Bench(Protocol):
         """What solves the effects, in words."""
 
     @property
-    def statement(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[str, ...]:
         """Where each figure comes from."""
 
     @property

@@ -39,7 +39,7 @@ class Case:
         return dict(self.family.values(self.q, self.place))
 
     @property
-    def statement(self) -> str:
+    def severity_text(self) -> str:
         """Severity in words."""
         known = {key: value for key, value in self.values.items() if value}
         words = [

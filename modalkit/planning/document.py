@@ -26,7 +26,7 @@ def to_json(found: Forecast) -> PlanDocument:
     """
     return {
         "schema": "modalkit.plan/1",
-        "said": list(found.bench.statement),
+        "said": list(found.bench.assumptions),
         "left_out": list(found.bench.left_out),
         "not_forecast": list(found.bench.not_forecast),
         "now": _design_forecast(found.now),
@@ -46,10 +46,10 @@ def _forecast(evaluation: DesignForecast, name: str) -> ForecastEntry:
         effect=family.cause,
         name=name,
         at=family.at or None,
-        seen_from=statement(evaluation, name, limit.seen),
-        separated_from=statement(evaluation, name, limit.separated),
-        sure_from=statement(evaluation, name, limit.sure),
-        asked=statement(evaluation, name, limit.clear),
+        seen_from=severity_text(evaluation, name, limit.seen),
+        separated_from=severity_text(evaluation, name, limit.separated),
+        sure_from=severity_text(evaluation, name, limit.sure),
+        asked=severity_text(evaluation, name, limit.clear),
         sigma=plain(evaluation.matrix.loc[name].to_dict()),
     )
 
@@ -60,7 +60,7 @@ def _advice(one: Advice) -> AdviceEntry:
     )
 
 
-def statement(evaluation: DesignForecast, name: str, q: float) -> str | None:
+def severity_text(evaluation: DesignForecast, name: str, q: float) -> str | None:
     """Return a severity in words; None where none is separated."""
     return family_of(evaluation, name).say(q) if math.isfinite(q) else None
 

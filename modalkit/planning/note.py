@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from modalkit.planning.document import statement
+from modalkit.planning.document import severity_text
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast
 from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
 
@@ -97,7 +97,7 @@ def _from_when(now: DesignForecast) -> str:
     for name in hard:
         limit = now.limits[name]
         never = f"{name} never ({limit.nearest} has the same effect)"
-        words.append(statement(now, name, limit.separated) or never)
+        words.append(severity_text(now, name, limit.separated) or never)
     return f"Late:    separated from all others only above these severities: {'; '.join(words)}."
 
 

@@ -66,7 +66,7 @@ class Tried:
         return any(len(s) == 1 and s <= self.right for s in answer.sets)
 
     @property
-    def statement(self) -> str:
+    def answer_text(self) -> str:
         """The answer in words."""
         if self.answer is None:
             return f"failed: {self.failure}"
@@ -86,11 +86,11 @@ class Tried:
         """Return a line of the table."""
         return {
             "effect": self.case.family.name,
-            "severity": self.case.statement,
+            "severity": self.case.severity_text,
             "test": "advice followed" if self.followed else "as it is",
             "forecast": self.forecast,
             "sigma": self.sigma,
-            "answered": self.statement,
+            "answered": self.answer_text,
             "right": "yes" if self.named else "in the class" if self.kept else "no",
         }
 

@@ -114,15 +114,15 @@ def _class(column: Column) -> str:
 
 
 def _cell(value: Cell | Raw, column: Column, *, first: bool) -> Raw:
-    statement: str | Raw
+    text: str | Raw
     if isinstance(value, Raw):
-        statement = value
+        text = value
     elif value is None or (isinstance(value, float) and math.isnan(value)):
-        statement = "–"
+        text = "–"
     elif isinstance(value, int | float) and column.write is not None:
-        statement = column.write(float(value))
+        text = column.write(float(value))
     else:
-        statement = str(value)
+        text = str(value)
     if first:
-        return element("th", statement, scope="row", class_=_class(column))
-    return element("td", statement, class_=_class(column))
+        return element("th", text, scope="row", class_=_class(column))
+    return element("td", text, class_=_class(column))

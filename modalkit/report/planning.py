@@ -45,7 +45,7 @@ def plan_report(
             Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
             Section("What a change gains", [changes_table(found)]),
             Section(f"Blind trials on {found.bench.basis}", [_trials(checked)]),
-            Section("What was assumed", [bullets(list(found.bench.statement))]),
+            Section("What was assumed", [bullets(list(found.bench.assumptions))]),
             Section("What the forecast leaves out", [_left_out(found)]),
             Section("What this rests on", [provenance(basis)]),
         ],
@@ -83,8 +83,8 @@ def thresholds_table(document: PlanDocument) -> Raw:
         ]
         for one in document["now"]["effects"]
     ]
-    statement = f"Seen: {SEEN:g} standard deviations beyond tolerances; surely: {SURE:g} from all others."
-    return table(statement, columns, rows)
+    caption = f"Seen: {SEEN:g} standard deviations beyond tolerances; surely: {SURE:g} from all others."
+    return table(caption, columns, rows)
 
 
 def changes_table(found: Forecast) -> Raw:

@@ -73,8 +73,8 @@ def cover(kind: str, basis: Basis) -> Raw:
 
 def provenance(basis: Basis) -> Raw:
     """Return the command, settings, files with their fingerprints, versions, date and study texts."""
-    statement = f"Written {basis.when.isoformat(sep=' ', timespec='seconds')} by {_versions()}."
-    parts = [element("p", statement)]
+    written = f"Written {basis.when.isoformat(sep=' ', timespec='seconds')} by {_versions()}."
+    parts = [element("p", written)]
     if basis.command:
         parts += [element("h3", "To repeat it"), element("pre", basis.command)]
     if basis.settings:

@@ -62,11 +62,11 @@ def _mode_table(modes: pd.DataFrame, name: str, several: bool) -> Raw:
         [int(mode), *(row[c.name] for c in columns[1:])]  # type: ignore[call-overload]
         for mode, row in modes.iterrows()
     ]
-    statement = (
+    caption = (
         f"{f'{name}: modes' if several else 'Modes'} of the test and of the unchanged model. Error: model "
         "minus test, relative to the test; sigma: uncertainty of the measured frequency."
     )
-    return table(statement, columns, rows)
+    return table(caption, columns, rows)
 
 
 def the_place(diagnosis: Diagnosis) -> Raw:
@@ -134,9 +134,9 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     values = [zone.probability for zone in where.zones]
     if max(values) - min(values) < 0.01:  # zones whose probabilities differ by less are not listed
         return element("p", f"All {len(values)} zones are equally probable: {probability(values[0])} each.")
-    statement = "Zones and the probability that the cause sits in each."
+    caption = "Zones and the probability that the cause sits in each."
     if where.zones_by == "regions":
-        statement = (
+        caption = (
             "Zones as if one of them alone were changed: nothing explains the gap, so this is a hint at most."
         )
     columns = [Column("zone"), Column("centre [m]"), Column("probability", probability)]
@@ -145,7 +145,7 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     rows: list[list[Cell | Raw]] = [
         [zone_in_words(z.name), c, z.probability] for z, c in zip(where.zones, centre, strict=True)
     ]
-    return folded(f"All {len(rows)} zones", table(statement, columns, rows))
+    return folded(f"All {len(rows)} zones", table(caption, columns, rows))
 
 
 def _modes(diagnosis: Diagnosis) -> Raw:
@@ -196,7 +196,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         why = "rejected: no cause, but data that are worse than stated"
         cells.append(["no cause", aside.probability, aside.p_value, why, str(aside), ""])
         marked.append(False)
-    statement = {
+    shaded = {
         "named": "The shaded row is the answer.",
         "class": "The shaded rows are the answer: one of them explains the gap; these data cannot show which.",
         "unknown": "None of them is the answer.",
@@ -205,7 +205,7 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     if not any(row[-1] for row in cells):
         columns, cells = columns[:-1], [row[:-1] for row in cells]
     left_out = f"Parameters of those under {probability(LEAST)} are left out."
-    words = f"Explanations, most probable first. {statement} {left_out}"
+    words = f"Explanations, most probable first. {shaded} {left_out}"
     parts = [table(words, columns, cells, marked=marked)]
     if len(rows) > len(shown):
         left = sum(r.probability for r in rows if r not in shown)
@@ -259,10 +259,10 @@ def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
 
 
 def _known(effect: Effect) -> Raw:
-    statement = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
+    about = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
     name = effect.name.replace("_", " ")
     key = joined(Raw(" ("), element("code", effect.name), Raw(")")) if name != effect.name else Raw("")
-    return element("p", element("strong", name), key, f": {statement}")
+    return element("p", element("strong", name), key, f": {about}")
 
 
 def the_shrinkage(diagnosis: Diagnosis) -> Raw:
@@ -277,14 +277,14 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
         rows.append([f"runner-up: {name}", None, shrink.held_runner_up])
     best = short(diagnosis.ranking[0].effects) if diagnosis.ranking else "best explanation"
     rows += [[best, shrink.after, shrink.held_after], ["noise of the test", None, shrink.floor]]
-    statement = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
+    caption = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
     columns = [
         Column("explanation"),
         Column("on fitted data", shrink.size),
         Column("on modes held out", shrink.size),
     ]
     marked = [False] * (len(rows) - 2) + [diagnosis.verdict in {"named", "class"}, False]
-    parts = [table(statement, columns, rows, marked=marked)]
+    parts = [table(caption, columns, rows, marked=marked)]
     if (points := shrink.points) is not None:
         parts.append(
             element(
@@ -314,12 +314,12 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
         )
         nothing = element("p", f"Nothing beyond noise, once {whose} is in the model.{worst}")
         return joined(nothing, *_of_no_library(diagnosis))
-    statement = (
+    size = (
         f"{whose} leaves {percent(left.percent)} beyond noise, {left.sigma:.0f} standard deviations where it is "
         "largest. Either another cause is present, or some data are worse than stated. Data that show it:"
     )
     carried = bullets(list(left.carried_by) or ["all data together"])
-    return joined(element("p", statement), carried, *_of_no_library(diagnosis))
+    return joined(element("p", size), carried, *_of_no_library(diagnosis))
 
 
 def _of_no_library(diagnosis: Diagnosis) -> list[Raw]:

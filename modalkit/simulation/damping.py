@@ -34,8 +34,8 @@ def damped_spec(study: Study, session: Session | None) -> tuple[Spec, tuple[str,
         return with_ratios(Predictor(spec, predictor.measured), ratios).spec, (
             "damping: the identified ratios, their median where no mode was identified",
         )
-    statement = f"damping: neither model nor test states any; {100 * UNKNOWN_DAMPING:g} % for every mode"
-    return with_ratios(Predictor(spec, predictor.measured), np.array([UNKNOWN_DAMPING])).spec, (statement,)
+    note = f"damping: neither model nor test states any; {100 * UNKNOWN_DAMPING:g} % for every mode"
+    return with_ratios(Predictor(spec, predictor.measured), np.array([UNKNOWN_DAMPING])).spec, (note,)
 
 
 def _ratios(predictor: Predictor) -> FloatArray | None:

@@ -18,7 +18,7 @@ from modalkit.simulation.measured import rig_of_data
 from modalkit.simulation.planned import rig_of_model
 from modalkit.simulation.setup import SAMPLING, MeasurementSetup, Options
 from modalkit.simulation.systems import drifting, known_sensors, remounted, systems
-from modalkit.study.named_effects import EffectValues, check_effect, departure, statement
+from modalkit.study.named_effects import EffectValues, check_effect, departure, effects_text
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.joining import together
@@ -188,7 +188,7 @@ def simulate_test(
         decay=test_setup.plan.decay + model.decay,
         gain=test_setup.plan.gain * model.gain * level,
     )
-    title = f"simulated, {ready.study.name}: {statement(effects)}; seed {seed}"
+    title = f"simulated, {ready.study.name}: {effects_text(effects)}; seed {seed}"
     hit = [remounted(system, factors) for system in systems(model.hung(), test_setup, state)]
     tests = [
         hammer_test(system, plan, rng=rng, geometry=test_setup.geometry, at_hit=at_hit)

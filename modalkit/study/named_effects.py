@@ -129,7 +129,7 @@ def written(value: Any) -> str:
     return f"{value:g}"
 
 
-def statement(effects: Sequence[EffectValues]) -> str:
+def effects_text(effects: Sequence[EffectValues]) -> str:
     """Return effects as they are written on the command line."""
     parts = [
         name + (":" if values else "") + ",".join(f"{k}={written(v)}" for k, v in values.items())

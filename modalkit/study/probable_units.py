@@ -78,9 +78,9 @@ def _guess(modulus: float, density: float) -> str | None:
     for one, other in pairs:
         found = modulus * si_value(f"1 {one}", "Pa"), density * si_value(f"1 {other}", "kg/m^3")
         if _solid(*found, USUAL_SPEEDS, USUAL_DENSITIES):
-            statement = [f'E = "{modulus:g} {one}"'] if one != "Pa" else []
-            statement += [f'density = "{density:g} {other}"'] if other != "kg/m^3" else []
-            return " and ".join(statement) or None
+            stated = [f'E = "{modulus:g} {one}"'] if one != "Pa" else []
+            stated += [f'density = "{density:g} {other}"'] if other != "kg/m^3" else []
+            return " and ".join(stated) or None
     return None
 
 

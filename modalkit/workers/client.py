@@ -43,14 +43,14 @@ class CommandFailedError(EstimationError):
         Its name.
     code : int
         The code [-].
-    statement : str
+    message : str
         Its message on failure.
     """
 
-    def __init__(self, command: str, code: int, statement: str) -> None:
+    def __init__(self, command: str, code: int, message: str) -> None:
         """State what failed, and how."""
-        super().__init__(f"`modalkit {command}` ended with code {code}: {statement}")
-        self.statement = statement
+        super().__init__(f"`modalkit {command}` ended with code {code}: {message}")
+        self.message = message
 
 
 class WarmProcess:
@@ -186,8 +186,8 @@ class WarmProcess:
             elif answer["signal"] is not None:
                 died = f"ended by {_signal_name(answer['signal'])}"
             elif answer["code"] != 0:
-                statement = answer["message"].removeprefix("modalkit: ") or "no message"
-                raise CommandFailedError(arguments[0], answer["code"], statement)
+                message = answer["message"].removeprefix("modalkit: ") or "no message"
+                raise CommandFailedError(arguments[0], answer["code"], message)
             else:
                 return
         raise EstimationError(

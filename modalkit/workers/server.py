@@ -78,7 +78,7 @@ def _forked(program: Program, request: Mapping[str, Any], requests: BinaryIO) ->
     if child == 0:
         _become(program, writing, Path(request["folder"]), request["arguments"])
     os.close(writing)
-    statement, ended = _listen(reading, requests, time.monotonic() + float(request["timeout"]))
+    output, ended = _listen(reading, requests, time.monotonic() + float(request["timeout"]))
     os.close(reading)
     if ended != "done":
         with contextlib.suppress(ProcessLookupError):
@@ -88,33 +88,33 @@ def _forked(program: Program, request: Mapping[str, Any], requests: BinaryIO) ->
     code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     if ended == "alone":
         return None
-    return _answer(code, statement.decode(errors="replace"), late=ended == "late")
+    return _answer(code, output.decode(errors="replace"), late=ended == "late")
 
 
-def _answer(code: int, statement: str, *, late: bool = False) -> dict[str, Any]:
+def _answer(code: int, output: str, *, late: bool = False) -> dict[str, Any]:
     return {
         "code": code if code >= 0 else None,
         "signal": -code if code < 0 else None,
         "late": late,
-        "message": (statement.strip().splitlines() or [""])[-1],
+        "message": (output.strip().splitlines() or [""])[-1],
     }
 
 
 def _listen(reading: int, requests: BinaryIO, end: float) -> tuple[bytes, Literal["done", "late", "alone"]]:
     """Gather the output of a fork until it is done, late, or no longer needed; keeps the last of it."""
-    statement = b""
+    output = b""
     while (left := end - time.monotonic()) > 0:
         ready, _, _ = select.select([reading, requests.fileno()], [], [], left)
         if (
             requests.fileno() in ready
         ):  # there is no further request before the answer: the other side has gone
-            return statement, "alone"
+            return output, "alone"
         if reading in ready:
             part = os.read(reading, 65536)
             if not part:
-                return statement, "done"
-            statement = (statement + part)[-_LAST:]
-    return statement, "late"
+                return output, "done"
+            output = (output + part)[-_LAST:]
+    return output, "late"
 
 
 def _become(program: Program, saying: int, folder: Path, arguments: Sequence[str]) -> NoReturn:
@@ -143,11 +143,11 @@ def _command(program: Program, folder: Path, arguments: Sequence[str]) -> int:
 
 def _here(program: Program, request: Mapping[str, Any], _: BinaryIO) -> dict[str, Any]:
     """Run a command in this process, where there are no forks."""
-    home, words, statement = Path.cwd(), sys.argv, io.StringIO()
+    home, words, output = Path.cwd(), sys.argv, io.StringIO()
     try:
-        with contextlib.redirect_stderr(statement):
+        with contextlib.redirect_stderr(output):
             code = _command(program, Path(request["folder"]), request["arguments"])
     finally:
         os.chdir(home)
         sys.argv = words
-    return _answer(code, statement.getvalue())
+    return _answer(code, output.getvalue())

@@ -172,8 +172,8 @@ def _nothing_usable(content: UffContent, paths: Sequence[Path]) -> str:
 
 def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -> FrfSet:
     """Return FRFs that were read, with the window stated; what is stated about hits has nothing to act on."""
-    statement = {"--use": processing.use, "--leave": processing.leave, "--window": processing.window}
-    useless = [name for name, value in statement.items() if value]
+    given = {"--use": processing.use, "--leave": processing.leave, "--window": processing.window}
+    useless = [name for name, value in given.items() if value]
     if useless:
         raise InputError(
             f"{frfs.source}: {', '.join(useless)} (or the same in a study) is for raw hits, but the files hold FRFs; "

@@ -92,12 +92,12 @@ def proposed(tests: Sequence[HammerTest], processing: ProcessingOptions) -> Prop
     for test in tests:
         one = test
         if holds_several_hits(one):
-            one, statement = split_hits(replace(one, decay=one.decay or processing.decay))
-            warnings += statement
+            one, notes = split_hits(replace(one, decay=one.decay or processing.decay))
+            warnings += notes
         split.append(stated(one, processing, warnings))
     verdicts = numbered([judge_hits(test) for test in split])
     cleared = [pulses_alone(test) for test in split]
-    warnings += [text for _, statement in cleared for text in statement]
+    warnings += [text for _, notes in cleared for text in notes]
     return Proposals(tuple(test for test, _ in cleared), tuple(verdicts), tuple(warnings))
 
 
@@ -132,18 +132,18 @@ def stated(test: HammerTest, processing: ProcessingOptions, warnings: list[str])
     if processing.decay and test.decay:
         check_decay(test.source, test.decay, processing.decay)
     elif processing.decay:
-        test, statement = state_window(test, decay=processing.decay, on=processing.window_on)
-        warnings += statement
+        test, notes = state_window(test, decay=processing.decay, on=processing.window_on)
+        warnings += notes
     else:
         warnings += on_window(test)
     return test
 
 
-def check_decay(source: str, stated: float, statement: float) -> None:
-    """Raise an InputError where a file and a statement differ in the decay of the exponential window [1/s]."""
-    if abs(stated - statement) > SAME_DECAY * stated:
+def check_decay(source: str, stated: float, given: float) -> None:
+    """Raise an InputError where a file and what is given differ in the decay of the exponential window [1/s]."""
+    if abs(stated - given) > SAME_DECAY * stated:
         raise InputError(
-            f"{source}: the file states an exponential window of {stated:g} 1/s, but {statement:g} 1/s is "
+            f"{source}: the file states an exponential window of {stated:g} 1/s, but {given:g} 1/s is "
             "given; leave one out or correct the other"
         )
 

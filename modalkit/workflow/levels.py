@@ -110,7 +110,7 @@ def _examined(
     dropped = _of_others(grown)
     products = _products(state, dropped, grown)
     state = state.without(dropped)
-    statement: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     if follows_level(state.found).any():
         smeared = is_smeared(state.model, state.found)
         if smeared:
@@ -118,9 +118,9 @@ def _examined(
             products = replace(products, names=(*products.names, *more))
             state = replace(state, model=with_line_doubt(state.model, state.found))
         state = replace(state, model=replace(state.model, levels=state.found))
-        statement = (*statement, _statement(state.model, state.found, smeared))
-    statement = (*_on_products(state, products), *statement)
-    return replace(state.model, warnings=(*state.model.warnings, *statement)) if statement else state.model
+        notes = (*notes, _notes(state.model, state.found, smeared))
+    notes = (*_on_products(state, products), *notes)
+    return replace(state.model, warnings=(*state.model.warnings, *notes)) if notes else state.model
 
 
 def _further(
@@ -228,15 +228,15 @@ def _with_coincidences(model: ModalModel) -> ModalModel:
         return model
     named = [f"{hertz(model.modal.frequency[i])} ({of})" for i, of in found.items()]
     rest = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
-    statement = (
+    warning = (
         f"{len(found)} of {len(model)} modes lie at sums or differences of stronger modes: {', '.join(named[:NAMED])}"
         f"{rest}. They may be products of a joint that slips or closes. To find out, hit softly and hard and give the "
         "raw hits: the constants of products grow with the force"
     )
-    return replace(model, warnings=(*model.warnings, statement))
+    return replace(model, warnings=(*model.warnings, warning))
 
 
-def _statement(model: ModalModel, found: LevelDependence, smeared: bool) -> str:
+def _notes(model: ModalModel, found: LevelDependence, smeared: bool) -> str:
     """Return notes on modes that follow the level."""
     from identification import follows_level
 

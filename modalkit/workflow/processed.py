@@ -139,27 +139,27 @@ class Processed(Shown):
         reach = self._reach(asked.named) if asked.band is None else None
         if reach is None:
             return self._informed(asked)
-        statement = Consequential(
+        reason = Consequential(
             f"the force is 20 dB down at {hertz(reach[1])}: modes are sought below that; give a band to go "
             "further"
         )
-        with _naming_band(self.frfs, None, statement):
+        with _naming_band(self.frfs, None, reason):
             prepared = self.prepared(reach, asked.order, asked.progress)
             model = prepared.modes(add=asked.add, drop=asked.drop, progress=asked.progress)
-        return replace(model, warnings=(*model.warnings, statement))
+        return replace(model, warnings=(*model.warnings, reason))
 
     def _informed(self, asked: _Asked) -> ModalModel:
         """Identify the modes of the part of a band in which the FRFs carry information."""
         from identification import at_cut_edge
 
-        within, statement = self._informed_part(asked.band, asked.named)
-        with _naming_band(self.frfs, asked.band, statement):
+        within, reason = self._informed_part(asked.band, asked.named)
+        with _naming_band(self.frfs, asked.band, reason):
             prepared = self.prepared(within, asked.order, asked.progress)
             model = prepared.modes(add=asked.add, drop=asked.drop, progress=asked.progress)
             whole = asked.band or (float(self.frfs.frequency[0]), float(self.frfs.frequency[-1]))
             if beyond := at_cut_edge(model.modal.frequency, within or whole, whole, self.frfs.df):
                 model = prepared.modes(add=asked.add, drop=[*asked.drop, *beyond])
-        return model if statement is None else replace(model, warnings=(*model.warnings, statement))
+        return model if reason is None else replace(model, warnings=(*model.warnings, reason))
 
     def _informed_part(
         self, band: tuple[float, float] | None, named: Sequence[float]
@@ -170,10 +170,10 @@ class Processed(Shown):
         if band not in self._informed_bands:
             judged = [(j.test, j.verdicts) for j in self.judged]
             self._informed_bands[band] = informed_band(self.frfs, judged, band)
-        within, statement = self._informed_bands[band]
+        within, reason = self._informed_bands[band]
         if within is not None and any(not within[0] <= f <= within[1] for f in named):
             return band, None
-        return within, statement
+        return within, reason
 
     def within(self, band: tuple[float, float] | None, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that is identified where this one is asked for and modes are named [Hz]; None is all."""
@@ -230,7 +230,7 @@ class Processed(Shown):
 
 
 @contextmanager
-def _naming_band(frfs: FrfSet, asked: tuple[float, float] | None, statement: str | None) -> Iterator[None]:
+def _naming_band(frfs: FrfSet, asked: tuple[float, float] | None, reason: str | None) -> Iterator[None]:
     """Name the band that was asked for where nothing is found in the part of it that was used.
 
     Raises
@@ -241,10 +241,10 @@ def _naming_band(frfs: FrfSet, asked: tuple[float, float] | None, statement: str
     try:
         yield
     except EstimationError as error:
-        if statement is None:
+        if reason is None:
             raise
         where = "" if asked is None else f" between {asked[0]:g} and {asked[1]:g} Hz"
-        raise EstimationError(f"{frfs.source}: no mode is found{where}; {statement}") from error
+        raise EstimationError(f"{frfs.source}: no mode is found{where}; {reason}") from error
 
 
 def frfs_of(

@@ -111,5 +111,5 @@ def _damped(predictor: Predictor, prediction: Prediction, paired: Paired) -> tup
         return with_ratios(
             predictor, ratios
         ), "identified damping ratios, their median where no mode is paired"
-    statement = f"a damping ratio of {100 * UNKNOWN_DAMPING:g} %, as neither test nor model states any"
-    return with_ratios(predictor, np.array([UNKNOWN_DAMPING])), statement
+    source = f"a damping ratio of {100 * UNKNOWN_DAMPING:g} %, as neither test nor model states any"
+    return with_ratios(predictor, np.array([UNKNOWN_DAMPING])), source

@@ -215,8 +215,8 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
         before = pair_modes(case.baseline, own_predictor.predict())
         doubt = doubt_in_mass(predictor.for_test(before.measured, there), before.measured, before.order)
         tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
-        statement = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
-        warnings += [f"baseline: {w}" for w in statement]
+        notes = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
+        warnings += [f"baseline: {w}" for w in notes]
         warnings += _on_accepted(case)
         additions.append(_corrected(before, there))
         baseline, baseline_order = before.measured, before.order

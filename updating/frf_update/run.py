@@ -158,12 +158,12 @@ def _without_odd(
         specimen.measured.nodes,
         "was left out" if better else "was kept, because the other FRFs do not fit better without it",
     )
-    statement = [
+    left_out = [
         f"the FRF at node {nodes[frfs.seen[i]]} by the force at node {nodes[frfs.hit[i]]} has {how} of the others, "
         f"relative to the model. It {what}; check its channel, calibration and direction"
         for i, how in sorted(found.items())
     ]
-    specimen = replace(specimen, warnings=(*specimen.warnings, *statement))
+    specimen = replace(specimen, warnings=(*specimen.warnings, *left_out))
     return (specimen, kept, again) if better else (specimen, frfs, steps)
 
 

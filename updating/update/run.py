@@ -24,7 +24,7 @@ from updating.update.statistics.determined import Statistics, assess, correlatio
 from updating.update.statistics.doubts import doubts
 from updating.update.statistics.held import Held, held, sentences
 from updating.update.statistics.mixture import Mixture
-from updating.update.statistics.solutions import Others, mixture, statement, within
+from updating.update.statistics.solutions import Others, mixture, notes_on_others, within
 
 EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
@@ -243,7 +243,7 @@ def report(fitted: Fitted) -> Update:
         inflation=statistics.inflation,
         history=history,
         exact=disagreement is not None and disagreement < AGREED,
-        warnings=(*_warnings(fitted, statistics, kept), *statement(system, several)),
+        warnings=(*_warnings(fitted, statistics, kept), *notes_on_others(system, several)),
         determinability=statistics.determinability.without(against),
         held=tuple(names[h.index] for h in kept),
         data=system.count,

@@ -78,11 +78,9 @@ def _misspelt(text: str, key: str) -> str:
     for i in range(length, len(words)):
         number = _AMOUNT.fullmatch(words[i].lstrip("=:"))
         before = [word for word in words[max(0, i - length - 1) : i] if word not in ("=", ":")][-length:]
-        statement = " ".join(before).rstrip("=:").lower()
-        if number and statement != key and SequenceMatcher(None, statement, key).ratio() >= _NEARLY:
-            return (
-                f"its ID lines state {statement[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
-            )
+        found = " ".join(before).rstrip("=:").lower()
+        if number and found != key and SequenceMatcher(None, found, key).ratio() >= _NEARLY:
+            return f"its ID lines state {found[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
     return ""
 
 

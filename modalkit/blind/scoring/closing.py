@@ -16,7 +16,7 @@ WITHIN = 10.0
 """Points of per cent within which a prediction counts as met [%]."""
 
 _COLUMNS = [
-    *("trial", "effect", "sort", "metric", "true_metric", "said", "low95", "high95"),
+    *("trial", "effect", "sort", "metric", "true_metric", "stated", "low95", "high95"),
     *("true", "beyond", "held_out", "covered", "held"),
 ]
 
@@ -32,7 +32,7 @@ def closing_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Share of the gap that closes [%]: ``statement`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
+        Share of the gap that closes [%]: ``stated`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
         data held out), ``true`` on the rig's own modes in the band and ``beyond`` on those above it; ``covered``:
         the true one lies in the interval; ``held``: the answer holds the hidden effect.
     """
@@ -46,18 +46,18 @@ def _row(outcome: Outcome) -> list[Any] | None:
         return None
     share_true = closed(true.before_percent, true.after_percent)
     share_beyond = closed(true.beyond_before_percent, true.beyond_after_percent)
-    statement = answer.closed
+    estimate = answer.closed
     inside = (
         None
-        if statement is None or np.isnan(statement.low + statement.high)
-        else bool(statement.low <= share_true <= statement.high)
+        if estimate is None or np.isnan(estimate.low + estimate.high)
+        else bool(estimate.low <= share_true <= estimate.high)
     )
     out = answer.held_out
     held_out = closed(
         out.get("before_percent"), out.get("after_percent"), out.get("noise_floor_percent") or 0.0
     )
     start = [outcome.index, label(outcome.truth.effects), sort_of(outcome.truth), answer.metric, true.metric]
-    stated = [np.nan] * 3 if statement is None else [statement.value, statement.low, statement.high]
+    stated = [np.nan] * 3 if estimate is None else [estimate.value, estimate.low, estimate.high]
     return [*start, *stated, share_true, share_beyond, held_out, inside, holds(answer, outcome.truth)]
 
 
@@ -82,14 +82,14 @@ def closed(before: float | None, after: float | None, floor: float = 0.0) -> flo
 
 
 def comparable(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the trials in which statement and truth concern the same quantity, frequency or damping.
+    """Return the trials in which answer and truth concern the same quantity, frequency or damping.
 
     Parameters
     ----------
     table : pandas.DataFrame
         As :func:`closing_table` returns it.
     """
-    return table[(table["said"] + table["true"]).notna() & (table["metric"] == table["true_metric"])]
+    return table[(table["stated"] + table["true"]).notna() & (table["metric"] == table["true_metric"])]
 
 
 MET, MISSED = "closes as stated, within 10 points of per cent", "mean |stated - true| closing [%]"
@@ -118,9 +118,9 @@ def closing(table: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
     } | {f"gap of {metric}": some for metric, some in stated.groupby("metric")}
     for group, some in groups.items():
         if len(some):
-            distance = (some["said"] - some["true"]).abs().to_numpy(float)
+            distance = (some["stated"] - some["true"]).abs().to_numpy(float)
             yield share(MET, group, distance <= WITHIN)
             yield measured(MISSED, group, distance, rng)
-            for question, column in ((STATED, "said"), (TRUE, "true"), (BEYOND, "beyond")):
+            for question, column in ((STATED, "stated"), (TRUE, "true"), (BEYOND, "beyond")):
                 yield number(question, group, some[column].mean(), int(some[column].notna().sum()))
             yield share(INSIDE, group, some["covered"].dropna().astype(bool))

@@ -98,22 +98,22 @@ def _row(outcome: Outcome, answer: Answer) -> list[Any]:
     truth = outcome.truth
     axes = len(truth.size)
     true = np.array([place[:axes] for place in truth.places], dtype=float)
-    statement = np.array([place[:axes] for place in answer.locations], dtype=float)
+    offered = np.array([place[:axes] for place in answer.locations], dtype=float)
     span = float(np.linalg.norm(truth.size))
-    distance = np.linalg.norm(true[:, None] - statement[None], axis=2) / span
+    distance = np.linalg.norm(true[:, None] - offered[None], axis=2) / span
     start = [outcome.index, label(truth.effects), sort_of(truth)]
     near, first = float(distance.min(axis=1).mean()), float(distance[:, : len(true)].min(axis=1).mean())
-    return [*start, near, first, len(statement), _covered(outcome), holds(answer, truth)]
+    return [*start, near, first, len(offered), _covered(outcome), holds(answer, truth)]
 
 
 def _covered(outcome: Outcome) -> bool | None:
     """Return whether every interval of a coordinate holds the true one."""
-    statement = true_row(outcome)
-    if statement is None:
+    own = true_row(outcome)
+    if own is None:
         return None
     inside = [
         bool(e.low <= outcome.truth.parameters[name] <= e.high)
-        for name, e in statement.parameters.items()
+        for name, e in own.parameters.items()
         if name.split(".")[-1] in ("x", "y")
         and name in outcome.truth.parameters
         and np.isfinite(e.low + e.high)

@@ -58,16 +58,16 @@ def severity_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
 
 
 def _rows(outcome: Outcome) -> list[list[Any]]:
-    statement = true_row(outcome)
-    if statement is None or outcome.answer is None:
+    own = true_row(outcome)
+    if own is None or outcome.answer is None:
         return []
     rows = []
     for name, true in outcome.truth.parameters.items():
-        if name in NOT_SCORED or name.split(".")[-1] in PLACES or name not in statement.parameters:
+        if name in NOT_SCORED or name.split(".")[-1] in PLACES or name not in own.parameters:
             continue
         if not isinstance(true, int | float) or not true:
             continue
-        e = statement.parameters[name]
+        e = own.parameters[name]
         covered = bool(e.low <= true <= e.high) if np.isfinite([e.low, e.high]).all() else None
         error = e.value / true - 1
         start = [outcome.index, label(outcome.truth.effects), name]
@@ -123,15 +123,15 @@ def point_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``true`` and ``statement`` points, and whether they are the same.
+        ``true`` and ``stated`` points, and whether they are the same.
     """
     rows = []
     for outcome in outcomes:
-        statement = true_row(outcome)
-        for name, points in () if statement is None else statement.points.items():
+        row = true_row(outcome)
+        for name, points in () if row is None else row.points.items():
             true = outcome.truth.parameters.get(name)
             if true is None:
                 continue
             own = tuple(true) if isinstance(true, list | tuple) else (int(true),)
             rows.append([outcome.index, name, str(own), str(points), sorted(own) == sorted(points)])
-    return pd.DataFrame(rows, columns=["trial", "parameter", "true", "said", "same"])
+    return pd.DataFrame(rows, columns=["trial", "parameter", "true", "stated", "same"])

@@ -94,8 +94,8 @@ def _row(outcome: Outcome) -> dict[str, Any]:
         "calibrated": truth.calibrated,
         "gap_percent": truth.gap_percent,
     }
-    statement = _FAILED | _NOT_FORECAST if answer is None else _statement(answer, truth)
-    return hidden | statement | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
+    answered = _FAILED | _NOT_FORECAST if answer is None else _answered(answer, truth)
+    return hidden | answered | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
 
 
 def is_visible(truth: Truth) -> bool:
@@ -107,7 +107,7 @@ def is_visible(truth: Truth) -> bool:
     return min(truth.visibility, *truth.beside, np.inf) >= VISIBLE and enough
 
 
-def _statement(answer: Answer, truth: Truth) -> dict[str, Any]:
+def _answered(answer: Answer, truth: Truth) -> dict[str, Any]:
     stated: Posterior = posterior(answer, truth)
     return {
         "verdict": answer.verdict,

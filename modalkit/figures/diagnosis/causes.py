@@ -56,8 +56,8 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
         last = i == len(found) - 1
         if i == ROWS or down + tall + (0.0 if last else LINE) > height:
             total = probability(sum(other.probability for other in found[i:]))
-            statement = f"{len(found) - i} more, together {total}"
-            axes.text(0, -down - 0.17, statement, fontsize=SMALL, color=MUTED)
+            rest = f"{len(found) - i} more, together {total}"
+            axes.text(0, -down - 0.17, rest, fontsize=SMALL, color=MUTED)
             break
         _bar(axes, row, -down - 0.30, width)
         for k, line in enumerate(under):

@@ -118,8 +118,8 @@ def _title(axes: Axes, shapes: Shapes, k: int) -> None:
     label = f"{k + 1}   {hertz(shapes.frequency[k])}"
     axes.set_title(label, loc="left", fontsize=TEXT, fontweight="bold", color=INK, pad=5)
     if shapes.model_frequency is not None:
-        statement = f"model {hertz(shapes.model_frequency[k])}"
-        axes.set_title(statement, loc="right", fontsize=SMALL, color=MUTED, pad=5)
+        beside = f"model {hertz(shapes.model_frequency[k])}"
+        axes.set_title(beside, loc="right", fontsize=SMALL, color=MUTED, pad=5)
 
 
 def _line(axes: Axes, shapes: Shapes, k: int, *, first: bool, last: bool) -> None:

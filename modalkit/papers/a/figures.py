@@ -86,7 +86,7 @@ def _figure(one: Walk) -> Figure:
     ]
     after = walked.result.rms_percent("after")
     before = walked.result.rms_percent("before")
-    statement = (
+    title = (
         f"{shown.of}: one factor takes the frequency error from {percent(before)} to {percent(after)} r.m.s."
     )
     note = (
@@ -94,7 +94,7 @@ def _figure(one: Walk) -> Figure:
         f"identified damping ratios  ·  accelerance at the accelerometer"
     )
     chart = frf_chart("frf", f"hit and seen at point {frfs.responses[row].node}", "", frfs.unit, curves)
-    return sheet_figure(Sheet(statement, note, [chart]))
+    return sheet_figure(Sheet(title, note, [chart]))
 
 
 def _at_the_sensor(frfs: FrfSet) -> int:

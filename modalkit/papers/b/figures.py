@@ -49,7 +49,7 @@ def figures_b(update: Staged) -> dict[str, Figure]:
     }  # fmt: skip
 
 
-def _frfs(update: Staged, number: int, statement: str, what: str, states: Mapping[str, State]) -> Figure:
+def _frfs(update: Staged, number: int, title: str, what: str, states: Mapping[str, State]) -> Figure:
     taped = update.taped
     frfs = taped.frfs
     back = frfs.laplace ** FORMS.index(frfs.form)
@@ -64,18 +64,18 @@ def _frfs(update: Staged, number: int, statement: str, what: str, states: Mappin
         title = f"seen at point {nodes[row]}, hit at point {frfs.references[row].node}"
         panels.append(frf_chart(f"frf-{row}", title, "", UNITS["receptance"], curves))
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances"
-    return sheet_figure(Sheet(statement, note, panels), columns=1)
+    return sheet_figure(Sheet(title, note, panels), columns=1)
 
 
-def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, statement: str) -> Figure:
+def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, title: str) -> Figure:
     taped = update.taped
     bars = [taped.frac_of(state) for state in states.values()]
     before, after = (f"{v.mean():.2f}" for v in bars)
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances, 5-600 Hz"
-    statement = statement.format(before=before, after=after)
+    title = title.format(before=before, after=after)
     first, second = states
     chart = frac_chart([f"{r.node}" for r in taped.frfs.responses], bars[0], bars[1], (first, second))
-    return chart_figure(chart, title=statement, note=note)
+    return chart_figure(chart, title=title, note=note)
 
 
 def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, float, float]]) -> Figure:
@@ -86,7 +86,7 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
         panels.setdefault(name, []).append(Course(region, scale * update.courses[parameter], given))
         repeats.setdefault(name, update.repeats[parameter])
     damped = "alpha" in panels
-    statement = (
+    title = (
         "Alpha and beta under the tape grow far above those of the bare steel"
         if damped
         else "Area and inertia grow by a third: the test's calibration, not the beam"
@@ -101,7 +101,7 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
         )
         for name, lines in panels.items()
     ]
-    return sheet_figure(Sheet(statement, note, charts), columns=1, tall=2.2)
+    return sheet_figure(Sheet(title, note, charts), columns=1, tall=2.2)
 
 
 def _unit(name: str) -> str:

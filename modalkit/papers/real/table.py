@@ -25,7 +25,7 @@ def row_of(outcome: RealOutcome) -> dict[str, str]:
         empty = dict.fromkeys(("size (95 %)", "gap [%]", "runner-up / tolerances / floor"), "")
         return row | {"said": outcome.missing or ""} | empty | {"judged": "skipped"}
     return row | {
-        "said": statement(document),
+        "said": verdict_text(document),
         "size (95 %)": sizes(outcome),
         "gap [%]": _gap(document),
         "runner-up / tolerances / floor": _rivals(document),
@@ -33,7 +33,7 @@ def row_of(outcome: RealOutcome) -> dict[str, str]:
     }
 
 
-def statement(document: Mapping[str, Any]) -> str:
+def verdict_text(document: Mapping[str, Any]) -> str:
     """Return the verdict with the sets of effects it names, and whether their size is implausible."""
     cause = document["cause"]
     if cause["verdict"] in ("none", "unknown"):

@@ -55,7 +55,7 @@ class OwnBench:
         Band examined [Hz].
     hits : int
         Hits at each point [-].
-    statement, left_out : tuples of str
+    assumptions, left_out : tuples of str
         Where each figure comes from, and what is not known of.
     without : tuple of str
         Effects that the study rules out.
@@ -68,7 +68,7 @@ class OwnBench:
     design: Design
     band: tuple[float, float]
     hits: int
-    statement: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
     basis = "the study's own model"

@@ -53,7 +53,7 @@ class _Test:
     known: Known
     band: tuple[float, float]
     hits: int
-    statement: tuple[str, ...]
+    assumptions: tuple[str, ...]
 
     @property
     def measured(self) -> Measured:
@@ -92,7 +92,7 @@ def bench_of(study: Study) -> OwnBench:
         design=design,
         band=test.band,
         hits=test.hits,
-        statement=(*test.statement, *_on_damping(design), *where_supports_are(test.predictor)),
+        assumptions=(*test.assumptions, *_on_damping(design), *where_supports_are(test.predictor)),
         left_out=tuple(_left_out(study)),
         without=without,
     )
@@ -144,14 +144,14 @@ def _with_data(study: Study) -> _Test:
     used = [] if processed is None else [v for v in processed.hits if v.used]
     hits = round(len(used) / max(len({v.point for v in used}), 1)) if used else (study.test.hits or HITS)
     where = f"{len(np.unique(test.points, axis=0))} points, {len(test.seen)} FRFs or components of shapes"
-    statement = (
+    assumptions = (
         where if len(test.seen) else "frequencies alone",
         f"{len(test.frequency)} modes that have a partner in the model",
         words,
     )
     inside = float(band[0]), float(band[1])
     return _Test(
-        predictor.for_test(test), case.tolerances, paired.order[rising], known, inside, hits, statement
+        predictor.for_test(test), case.tolerances, paired.order[rising], known, inside, hits, assumptions
     )
 
 
@@ -190,14 +190,14 @@ def _planned(study: Study) -> _Test:
     whence = (
         "as planned" if stated is not None else "by default, since neither data nor [test] points state where"
     )
-    statement = (
+    assumptions = (
         f"{len(points.hit)} points hit, the sensor at point {points.nodes[sensor]} ({whence})",
         f"{len(ranks)} modes in {band[0]:g} to {band[1]:g} Hz",
         f"assumed, without data: frequencies to {100 * frequency[0]:g} %, damping to {100 * damping[0]:g} "
         f"%, constants to {100 * shape[0]:g} % of their mode's largest",
     )
     known = Known(frequency, damping, shape)
-    return _Test(test, case.tolerances, ranks, known, band, table.hits or HITS, statement)
+    return _Test(test, case.tolerances, ranks, known, band, table.hits or HITS, assumptions)
 
 
 def _spaced(study: Study, spec: Spec) -> PlannedPoints:

@@ -17,7 +17,7 @@ from modalkit.planning.own import OwnBench, bench_of
 from modalkit.planning.separability import SEEN
 from modalkit.planning.trials import Tried, check
 from modalkit.simulation.simulate import simulate_test
-from modalkit.study.named_effects import statement
+from modalkit.study.named_effects import effects_text
 from modalkit.study.read import read_study
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
@@ -74,7 +74,7 @@ def test_the_data_of_a_case_say_nothing_of_what_is_hidden(
     assert made.tolerances == bench.study.tolerances
     assert made.model == bench.study.model
     assert made.test.calibration == bench.study.test.calibration
-    words = statement(hidden(cases[0])).encode()
+    words = effects_text(hidden(cases[0])).encode()
     simulate_test(bench.trial.ready, hidden(cases[0]), seed=1).write(tmp_path / "open.uff")
     assert words in (tmp_path / "open.uff").read_bytes()
     assert words not in (tmp_path / "test.uff").read_bytes()

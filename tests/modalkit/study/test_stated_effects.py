@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from acquisition.errors import InputError, StudyError
-from modalkit.study.named_effects import parse_effect, statement
+from modalkit.study.named_effects import effects_text, parse_effect
 from modalkit.study.read import read_study
 from modalkit.study.stated_effects import accepted_values, was_before
 
@@ -41,7 +41,7 @@ def test_nonsense_is_refused(entry: dict[str, object]) -> None:
 def test_the_command_line_takes_them_too() -> None:
     name, values = parse_effect("polarity:points=3/4")
     assert (name, values) == ("polarity", {"points": (3, 4)})
-    assert statement([(name, values)]) == "polarity:points=3/4"
+    assert effects_text([(name, values)]) == "polarity:points=3/4"
     assert parse_effect("position_error:point=3,dx=0.01")[1] == {"point": 3, "dx": 0.01}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.quantities import quantity
 from updating.diagnosis.next_test.base import Maker, Outcome, Rival, Site, Trial
-from updating.diagnosis.next_test.places import in_liquid, statement, telling_places
+from updating.diagnosis.next_test.places import in_liquid, place_text, telling_places
 from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.base import Effect, total_mass
 from updating.models.state import State
@@ -27,7 +27,7 @@ class AddedMass(Repeat):
     def __init__(self, site: Site, place: FloatArray, mass: float) -> None:
         """Take a place [m] and a mass [kg]."""
         compared = quantity(float(f"{mass:.2g}"), "kg")
-        self.measure = f"repeat the test with a weighed mass of {compared} fixed at {statement(site, place)}"
+        self.measure = f"repeat the test with a weighed mass of {compared} fixed at {place_text(site, place)}"
         self.place, self.mass = place, mass
 
     def problem(self, site: Site) -> SpecimenProblem:

@@ -9,7 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
-from updating.diagnosis.next_test.places import grid, statement
+from updating.diagnosis.next_test.places import grid, place_text
 from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.structure.sensors import sensor_places
 from updating.problem.specimen import SpecimenProblem
@@ -27,7 +27,7 @@ class FurtherPoint(Repeat):
 
     def __init__(self, site: Site, place: FloatArray) -> None:
         """Take a place [m]."""
-        self.measure = f"measure at one more point, {statement(site, place)}"
+        self.measure = f"measure at one more point, {place_text(site, place)}"
         self.place = place
 
     def problem(self, site: Site) -> SpecimenProblem:

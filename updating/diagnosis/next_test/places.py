@@ -55,7 +55,7 @@ def telling_places(problem: SpecimenProblem, *, most: int = 4) -> FloatArray:
     return points[list(dict.fromkeys(chosen))]
 
 
-def statement(site: Site, place: FloatArray) -> str:
+def place_text(site: Site, place: FloatArray) -> str:
     """Return how a place is called: the number of a test point there, or its coordinates."""
     test = site.problem.measured
     if len(test.points):

@@ -11,7 +11,7 @@ from scipy import sparse
 
 from acquisition.archives import MAGIC, array_of, members
 from acquisition.arrays import AnyArray
-from acquisition.errors import StudyError
+from acquisition.errors import StudyError, in_one_line
 from updating.models.fields import Sparse
 from updating.models.imported.numerals import check_order
 
@@ -33,9 +33,9 @@ def read_archive(path: Path) -> Sparse:
         arrays = {name: array_of(content) for name, content in members(path).items()}
         return _sparse(arrays, path) if "format" in arrays else _plain(arrays, path)
     except (ValueError, KeyError, OSError) as error:
-        statement = " ".join(str(error).split())
+        reason = in_one_line(error)
         raise StudyError(
-            f"{path}: not an .npz archive of one matrix ({statement}); use scipy.sparse.save_npz"
+            f"{path}: not an .npz archive of one matrix ({reason}); use scipy.sparse.save_npz"
         ) from error
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from acquisition.arrays import AnyArray
-from acquisition.errors import InputError, StudyError
+from acquisition.errors import InputError, StudyError, in_one_line
 from acquisition.recorders.matlab.elements import COMPLEX, FIRST_NUMBER, LAST_NUMBER, SPARSE, Array
 from acquisition.recorders.matlab.file import arrays
 from updating.models.fields import Sparse
@@ -29,8 +29,10 @@ def read_matlab(path: Path) -> Sparse:
     except InputError as error:
         raise StudyError(str(error)) from error
     except (ValueError, IndexError) as error:
-        why = " ".join(str(error).split())
-        raise StudyError(f"{path}: not a whole .mat ({why}); save it again with save(..., '-v7')") from error
+        reason = in_one_line(error)
+        raise StudyError(
+            f"{path}: not a whole .mat ({reason}); save it again with save(..., '-v7')"
+        ) from error
     if len(found) != 1:
         names = ", ".join(sorted(found)) or "none"
         raise StudyError(f"{path}: holds {len(found)} matrices ({names}); put one into each file")

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray, IntArray, frozen_array
-from acquisition.errors import StudyError
+from acquisition.errors import StudyError, in_one_line
 from updating.models.imported.calculix import read_dofs
 from updating.models.imported.deck import Deck, read_deck
 from updating.models.imported.sets import NodeSets, sets_of_deck, sets_of_table
@@ -215,8 +215,8 @@ def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFr
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
     except (ValueError, pd.errors.ParserError) as error:
-        statement = " ".join(str(error).split())
-        raise StudyError(f"{path}: not a CSV table ({statement}); columns: {', '.join(COLUMNS)}") from error
+        reason = in_one_line(error)
+        raise StudyError(f"{path}: not a CSV table ({reason}); columns: {', '.join(COLUMNS)}") from error
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise StudyError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = pd.Index([str(c).strip().lower() for c in table.columns])

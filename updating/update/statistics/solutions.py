@@ -130,7 +130,7 @@ def within(estimate: Estimate, model_parameter: ModelParameter, several: Mixture
     return replace(estimate, interval=(low, high))
 
 
-def statement(system: System, several: Mixture | None) -> tuple[str, ...]:
+def notes_on_others(system: System, several: Mixture | None) -> tuple[str, ...]:
     """State which parameters other solutions turn otherwise."""
     if several is None:
         return ()

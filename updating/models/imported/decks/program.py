@@ -133,8 +133,8 @@ def run(path: str, text: str, source: str) -> Stored:
 def _complaint(output: str) -> str:
     """Return CalculiX's error message, in one line."""
     found = re.search(r"\*ERROR[^\n]*(?:\n(?!\s*\n|\s*\*)[^\n]*){0,3}", output)
-    statement = found.group() if found else " ".join(output.split()[-30:])
-    return " ".join(statement.split())[:300] or "it stopped without a message"
+    message = found.group() if found else " ".join(output.split()[-30:])
+    return " ".join(message.split())[:300] or "it stopped without a message"
 
 
 def _of_order(matrix: Sparse, order: int, source: str) -> Sparse:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from acquisition.errors import StudyError
+from acquisition.errors import StudyError, in_one_line
 from updating.models.fields import Sparse
 from updating.models.imported.naming import chosen
 from updating.models.imported.nastran import op2, op4_binary, op4_text
@@ -73,6 +73,4 @@ def _contents(raw: bytes, path: Path) -> list[Matrix]:
 
 def _damaged(path: Path, error: Exception) -> StudyError:
     module = "OUTPUT2" if path.suffix.lower() == ".op2" else "OUTPUT4"
-    return StudyError(
-        f"{path}: not a whole file of {module} ({' '.join(str(error).split())[:200]}); write it again"
-    )
+    return StudyError(f"{path}: not a whole file of {module} ({in_one_line(error)}); write it again")
