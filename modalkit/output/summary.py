@@ -1,4 +1,4 @@
-"""A diagnosis as a colleague would write it: five lines that answer, then the tables."""
+"""A diagnosis as a colleague would write it: five lines that answer, and the sentences beside the tables."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from modalkit.output.forms import numbers_a_form
 from modalkit.output.how_far import SHOWN, beneath, by_chance, closes, deviating, sure
 from modalkit.output.mechanism import content_text, shared_text
 from modalkit.output.names import is_numbered, owners
+from modalkit.output.shortcomings import WORDINGS
 from updating import Diagnosis
 from updating.diagnosis.answer.in_no_library import SOMETHING_ELSE, SomethingElse
 from updating.diagnosis.answer.ranked import Ranked
@@ -53,11 +54,11 @@ def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and (odd := deviating(diagnosis)):
         return f"no gap beyond tolerances and noise, once isolated deviations are left out: {odd}"
     if diagnosis.verdict == "none":
-        sure = "" if diagnosis.suspected is None else "certain "
+        certain = "" if diagnosis.suspected is None else "certain "
         if not diagnosis.comparable:
             return "no gap beyond tolerances and noise in the modes that have a partner; most have none"
         allowed = f"tolerances and noise{beneath(diagnosis)}"
-        return f"no {sure}gap beyond {allowed}; {_suspected(diagnosis.suspected)}"
+        return f"no {certain}gap beyond {allowed}; {_suspected(diagnosis.suspected)}"
     if diagnosis.verdict == "unknown":
         return f"unknown: {_unknown(diagnosis)}"
     if diagnosis.verdict == "named":
@@ -102,19 +103,10 @@ def _unknown(diagnosis: Diagnosis) -> str:
         if not ends or diagnosis.ranking[0].p_value < diagnosis.rules.rejected_fit:
             return nothing
         return f"the gap is real; {first} fits only at an end of its plausible range: {', '.join(ends)}"
-    if diagnosis.lacks == "closing":
-        return (
-            f"the gap is real; {first} fits best, but closes too little of the gap and leaves more than noise"
-        )
-    if diagnosis.lacks == "one size":
-        return f"the gap is real; {first} fits best, but parts of the data require different sizes of it"
-    if diagnosis.lacks == "samples":
-        return (
-            f"the gap is real; {first} fits best, but its probability is not known: the likelihood is too rough for"
-            " samples to determine it"
-        )
-    if diagnosis.lacks == "library":
-        return f"the gap is real; {first} fits best, but {_of_no_library(diagnosis.something_else)}"
+    if diagnosis.lacks != "evidence":
+        other = diagnosis.something_else if diagnosis.lacks == "library" else None
+        but = WORDINGS[diagnosis.lacks].but if other is None else _of_no_library(other)
+        return f"the gap is real; {first} fits best, but {but}"
     odds = f"{np.exp(diagnosis.rules.beyond_nothing):.0f} times as likely"
     aside, rival = diagnosis.set_aside, "tolerances or noise that are worse than stated"
     if aside is not None and aside.probability > by_chance(diagnosis):
@@ -122,10 +114,8 @@ def _unknown(diagnosis: Diagnosis) -> str:
     return f"{first} would explain the gap, but is not {odds} as {rival}"
 
 
-def _of_no_library(other: SomethingElse | None) -> str:
+def _of_no_library(other: SomethingElse) -> str:
     """State how likely a cause is that no library has, and what it would change."""
-    if other is None:
-        return "a cause outside the library is as likely"
     would = f": {', '.join(map(str, other.changes[:3]))}" if other.changes else ""
     return f"a cause outside the library has a probability of {probability(other.probability)}{would}"
 
@@ -172,6 +162,10 @@ def _values(diagnosis: Diagnosis) -> str:
     return text if row.plausible else f"{text} This size is implausible: consider other causes, too.".strip()
 
 
+MULTIPLIERS = frozenset({"factor", "gain"})
+"""Parameters that multiply what the model or the data have."""
+
+
 def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
     """Return a set of effects, with where each is by name, and its size where it is one number."""
     row = _row(diagnosis, names)
@@ -180,13 +174,15 @@ def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
     if row is None:
         return " + ".join(names)
     text = " + ".join(name + _at(row, i) for i, name in enumerate(names))
-    numbers = [e for e in row.parameters.values() if e.unit != NAME]
+    numbers = {key.rpartition(".")[2]: e for key, e in row.parameters.items() if e.unit != NAME}
     if len(numbers) != 1 or len(names) > 1:
         return text
-    (estimate,) = numbers
+    ((name, estimate),) = numbers.items()
     if not isinstance(estimate.value, float):
         return text
-    return f"{text} ({'x ' if estimate.unit == '-' else ''}{estimate.bare})"
+    if estimate.unit != "-":
+        return f"{text} ({estimate.bare})"
+    return f"{text} ({'x' if name in MULTIPLIERS else name.replace('_', ' ')} {estimate.bare})"
 
 
 def _at(row: Ranked, index: int) -> str:

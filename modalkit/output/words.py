@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from acquisition.quantities import p_value, percent, place, raised
 from modalkit.output.how_far import beneath
 from modalkit.output.names import sizes
+from modalkit.output.shortcomings import WORDINGS
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.ranked import Ranked
 
@@ -50,9 +51,8 @@ def answer(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         content = f": {diagnosis.mechanism}" if diagnosis.mechanism else ""
         gap = f"A real gap ({p_value(diagnosis.p_value)})"
-        if diagnosis.lacks == "evidence" and not diagnosis.mechanisms:
-            return f"{gap}, and no cause is clearly more probable than tolerances or data worse than stated"
-        return f"{gap}, and nothing in the library of effects explains it{content}"
+        lacks = "library" if diagnosis.mechanisms or diagnosis.lacks is None else diagnosis.lacks
+        return f"{gap}, and {WORDINGS[lacks].headline}{content}"
     if diagnosis.verdict == "named":
         where, value = _detail(diagnosis)
         *first, last = [phrase([name]) for name in diagnosis.sets[0]]

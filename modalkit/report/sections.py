@@ -10,6 +10,7 @@ from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.output.how_far import by_chance, without_cause
 from modalkit.output.names import in_words, sizes, zone_in_words
+from modalkit.output.shortcomings import WORDINGS
 from modalkit.output.summary import NO_CAUSE, answers, of_no_library_text, searched_text, separates
 from modalkit.output.words import METRICS, short
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
@@ -226,8 +227,8 @@ def _why(row: Ranked, diagnosis: Diagnosis) -> str:
     best = max((r.probability for r in diagnosis.ranking), default=row.probability)
     if diagnosis.verdict == "none":
         return "not needed: there is no gap"
-    if diagnosis.verdict == "unknown":
-        return "fits, but hardly better than a discrepancy without any effect"
+    if diagnosis.lacks is not None and (row is diagnosis.ranking[0] or diagnosis.lacks == "evidence"):
+        return WORDINGS[diagnosis.lacks].row
     if not row.plausible:
         return "rejected: fits at a size that is implausible"
     times = best / max(row.probability, 1e-300)

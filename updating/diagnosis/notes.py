@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+from scipy.stats import norm
+
+from acquisition.quantities import quantity
 from updating.diagnosis.answer.consistency import Split
 from updating.diagnosis.answer.rules import DEFAULT_RULES, DecisionRules
 from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.compared import Search
 from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.points import Point
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction
-from updating.thresholds import NEGLIGIBLE_PROBABILITY
+from updating.thresholds import NEGLIGIBLE_PROBABILITY, REJECTED_FIT
 
 
 def on_rules(rules: DecisionRules) -> list[str]:
@@ -56,6 +61,8 @@ def on_search(problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, .
             "causes was compared with and without them"
         )
     notes += _on_samples(found)
+    for row in found.compared[:1]:
+        notes += on_marks(problem, row.explanation.best, " + ".join(row.names) or "no cause")
     for one in problem.specimens:
         notes += notes_on_doubtful(one, " or ".join(" + ".join(names) for names in sets))
         if one.theory_error is not None:
@@ -79,3 +86,24 @@ def _on_samples(found: Search) -> list[str]:
         and row.explanation.samples.shape[1]
         and 0 < row.explanation.effective < row.explanation.wanted
     ]
+
+
+def on_marks(problem: DiagnosisProblem, best: Point, cause: str) -> list[str]:
+    """Return which points an answer has farther from where they are stated than chance puts any of them."""
+    moved = best.marginal.shift[best.comparison.moving]
+    count = sum(marks.doubt.size for one in problem.specimens for marks in one.marks)
+    notes, first = [], 0
+    for one in problem.specimens:
+        first += len(one.names)
+        for marks in one.marks:
+            away = moved[first : first + marks.doubt.size].reshape(marks.doubt.shape)
+            first += marks.doubt.size
+            k, axis = np.unravel_index(np.abs(away).argmax(), away.shape)
+            if count * 2 * norm.sf(abs(away[k, axis])) < REJECTED_FIT:
+                what = "the hits" if marks.end == "hit" else "the sensor"
+                notes.append(
+                    f"{cause} fits only if {what} of point {one.measured.nodes[marks.points[k]]} lay "
+                    f"{quantity(float(abs(away[k, axis]) * marks.doubt[k, axis]), 'm')} from the stated place "
+                    f"({abs(away[k, axis]):.0f} standard deviations): check where it was"
+                )
+    return notes

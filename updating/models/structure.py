@@ -161,13 +161,19 @@ class FieldStructure(Structure):
     @cached_property
     def cell_of(self) -> IntArray:
         """Cell in which each quadrature point of a beam lies, (n_points,)."""
-        return np.asarray(np.searchsorted(self.cells, self.fields.points[:, 0]) - 1)
+        return self.in_cells(self.fields.points[:, 0])[0]
 
     @cached_property
     def within_cell(self) -> FloatArray:
         """Where in its cell each lies, from -1 to 1, (n_points,) [-]."""
-        low, high = self.cells[self.cell_of], self.cells[self.cell_of + 1]
-        return np.asarray((2 * self.fields.points[:, 0] - low - high) / (high - low))
+        return self.in_cells(self.fields.points[:, 0])[1]
+
+    def in_cells(self, places: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return the cell of a beam in which each place (n,) [m] lies, and where in it, from -1 to 1 [-]."""
+        ends = self.cells
+        cell = np.clip(np.searchsorted(ends, places, side="right") - 1, 0, len(ends) - 2)
+        low, high = ends[cell], ends[cell + 1]
+        return cell, np.asarray((2 * places - low - high) / (high - low))
 
     @cached_property
     def finer(self) -> FieldStructure:

@@ -29,7 +29,7 @@ from updating.likelihood.gaussian import gaussian
 from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
-from updating.likelihood.places import Places
+from updating.likelihood.places import Marks, Places
 from updating.likelihood.trend import Trends
 from updating.likelihood.unpaired import UnpairedModes
 from updating.models.absorbers import swinging
@@ -262,10 +262,15 @@ class SpecimenProblem:
     def _places(self) -> Places | None:
         return next((one.places for one in self.quantities if isinstance(one, Constants)), None)
 
+    @property
+    def marks(self) -> tuple[Marks, ...]:
+        """Where the hammer was to hit and sensors were to stand, at whose places a prediction may be linearised."""
+        return () if self._places is None else self._places.marks
+
     @cached_property
     def place_bending(self) -> FloatArray:
         """How far constants leave their linearisation at one standard deviation of each place, (n_places,) [noise]."""
-        if self._places is None or not self._places.marks:
+        if self._places is None or not self.marks:
             return np.zeros(0)
         start = self.compare(NOMINAL)
         of = start.of("frf")

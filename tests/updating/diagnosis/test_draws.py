@@ -86,3 +86,19 @@ def test_a_rough_likelihood_does_not_make_narrow_intervals() -> None:
     assert found.effective < 10
     spread = np.sqrt(found.weights @ (found.samples - found.weights @ found.samples) ** 2)
     assert (spread > 0.3 * sigma).all()
+
+
+def test_as_many_possible_samples_as_are_wanted() -> None:
+    """Weights of one size are worth their number up to round-off: no power of them is worth more."""
+    met = 0
+
+    def log_likelihood(u: FloatArray) -> FloatArray:
+        nonlocal met
+        heights = np.full(len(u), -np.inf)
+        heights[: max(4 - met, 0)] = 0.0
+        met += len(u)
+        return heights
+
+    found = draw_posterior(log_likelihood, about([peak(np.eye(1) * 1e4)]), 16, most=64)
+    assert np.count_nonzero(found.weights) == 4
+    assert 0 < found.effective <= 4

@@ -139,6 +139,20 @@ def test_a_beam_under_tension_and_thrust(share: float) -> None:
     assert predicted("axial_load", "beam", force=force) == pytest.approx(axially_loaded(force, 5), rel=2e-5)
 
 
+@pytest.mark.parametrize("clamped", [("x0", "x1"), ("y0", "y1")])
+@pytest.mark.parametrize("size", ["length", "width"])
+def test_a_tension_of_a_plate_of_another_size(clamped: tuple[str, ...], size: str) -> None:
+    """Along the force slopes fall with the size; across it more edge carries the same force."""
+    spec, factor = replace(PLATE, clamped=clamped), 1.1
+    points = blank(np.array([(0.1, 0.05), (0.2, 0.1)]))
+    force = 2 * buckling_load(Predictor(spec, points))
+    there = Predictor(replace(spec, **{size: factor * getattr(spec, size)}), points)
+    loaded = there.predict(LIBRARY["axial_load"].state(there, {"force": force}), count=1).frequency
+    scaled = Predictor(spec, points, additions=(lambda _: State(factors={size: factor}),))
+    found = scaled.predict(LIBRARY["axial_load"].state(scaled, {"force": force}), count=1).frequency
+    assert found == pytest.approx(loaded, rel=1e-3)
+
+
 @pytest.mark.parametrize(("clamped", "factor"), [(("x0",), 0.25), (("x0", "x1"), 4.0)])
 def test_euler_buckles(clamped: tuple[str, ...], factor: float) -> None:
     predictor = Predictor(replace(THIN, clamped=clamped), blank(POINTS[:3]))

@@ -1,4 +1,13 @@
-"""The most probable parameters of a candidate: Gauss-Newton in the unit cube of prior quantiles."""
+"""The most probable parameters of a candidate: damped Gauss-Newton steps in the unit cube of prior quantiles.
+
+A step s solves (N + d diag N) s = g, with the Fisher information N, the slope g and the damping d (Marquardt 1963, SIAM
+Journal 11, 431-441). A parameter at an end of its range whose slope leads out of it is held; any other is clipped
+there. A gain lessens the damping, a failure on a slope that was taken at the point itself raises it.
+
+A slope costs an evaluation for each parameter. Of many parameters (``FRESH_PARAMETERS``) a step that gains only
+corrects the sensitivities (Broyden 1965, Mathematics of Computation 19, 577-593). They are taken anew where a step
+fails or seems to rest, so that no search rests on a corrected slope.
+"""
 
 from __future__ import annotations
 
@@ -68,15 +77,22 @@ def maximise(
     keep : (n,) bool array, optional
         Data to use; left out, all.
     rounds : int
-        Most steps taken; a maximisation that is at rest ends before.
+        Most steps from one linearisation of the tolerances; 0 takes the slope at the start.
     bar : float
         Log-likelihood that has been reached elsewhere: a maximisation far below that gains little ends.
+
+    Returns
+    -------
+    Peak
+        Of an impossible point with a unit matrix and no slope; of one that ends far below ``bar`` with the slope last
+        stepped on, which may be that of an earlier point.
     """
     point, slope = _ascend(problem, candidate, start, keep, rounds, bar)
     if not point.possible:
         return Peak(point, np.eye(len(point.coordinates)), np.zeros(len(point.coordinates)))
     hopeless = slope is not None and bar - point.marginal.log_likelihood >= HOPELESS_BEHIND
     again = False
+    # each time the steps are half as long or less, down to the shortest, which counts as fresh
     while slope is None or not (slope.fresh or hopeless):
         slope, again = slope_at(problem, candidate, point, keep, slope, again=again), True
     return Peak(point, slope.normal, slope.gradient)
@@ -151,6 +167,7 @@ def _uphill(
         promised = float(step @ gradient - 0.5 * step @ slope.normal @ step)
         stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0
         if gain > 0:
+            # what the noise's change adds to the slope goes roughly with chi-squared; it is not differenced again
             quieter = min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
             columns = _secant(slope.columns, point, trial)
             slope = replace(
@@ -183,6 +200,7 @@ def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:
 def _step(
     normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: float, stretch: float
 ) -> FloatArray:
+    """Return the damped step (k,) of the ``free`` parameters, ``stretch`` times as long, none farther than 0.3 [-]."""
     step = np.zeros_like(gradient)
     inner = normal[np.ix_(free, free)]
     ridge = np.diag(damping * np.diag(inner) + 1e-6)

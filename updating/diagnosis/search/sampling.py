@@ -1,10 +1,11 @@
-"""Samples of the posterior and the evidence, by population Monte Carlo.
+"""Samples of the posterior and the evidence, by adaptive multiple importance sampling.
 
 The proposals are a mixture: the prior itself, and a t-distribution about every maximum. So it is right for a maximum at
 an end of the prior, for several maxima, and for a parameter the data do not see, where a Laplace approximation is not.
-All samples of all rounds are weighted by the whole mixture that they were drawn from (Veach and Guibas 1995), and each
-round fits the mixture to them by a step of expectation and maximisation (Cappe, Douc, Guillin, Marin and Robert 2008,
-Statistics and Computing 18, 447-459). What samples of the prior hold of the weight becomes a component of its own.
+All samples of all rounds are weighted by the whole mixture that they were drawn from (Veach and Guibas 1995, SIGGRAPH,
+419-428; Cornuet, Marin, Mira and Robert 2012, Scandinavian Journal of Statistics 39, 798-812). Each round fits the
+mixture to them by a step of expectation and maximisation (Cappe, Douc, Guillin, Marin and Robert 2008, Statistics and
+Computing 18, 447-459). What samples of the prior hold of the weight becomes a component of its own.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from scipy.stats import t as student
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.search.fit import Peak
-from updating.thresholds import ENOUGH_SAMPLES, MOST_SAMPLES, PRIOR_SHARE, SAMPLE_FREEDOM
+from updating.thresholds import ENOUGH_SAMPLES, MOST_SAMPLES, PRIOR_SHARE, SAMPLE_FREEDOM, UNSEEN_CURVATURE
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,17 +41,24 @@ class Mixture:
     factors: FloatArray
 
     def draw(self, count: int, *, seed: int) -> FloatArray:
-        """Return what of ``count`` samples is inside the cube, (m, k) [-]; outside of it the likelihood is nil."""
+        """Return what of ``count`` samples is inside the cube, (m, k) [-]; outside of it the prior is nil.
+
+        Samples outside weigh nothing and count among those drawn.
+        """
         cube = qmc.Sobol(self.means.shape[1], seed=seed).random(count)
         ends = np.round(count * np.cumsum(self.shares)).astype(int)
         drawn = [cube[ends[-1] :]]
         for part, mean, lower in zip(np.split(cube, ends)[:-1], self.means, self.factors, strict=True):
+            # a t-variate of 0 or 1 is infinite
             drawn.append(mean + student.ppf(np.clip(part, 1e-6, 1 - 1e-6), SAMPLE_FREEDOM) @ lower.T)
         samples = np.concatenate(drawn)
         return np.asarray(samples[np.all((samples >= 0) & (samples <= 1), axis=1)])
 
     def log_parts(self, samples: FloatArray) -> FloatArray:
-        """Return the logarithm of each part's density at samples (m, k), the prior's first, (1 + c, m) [-]."""
+        """Return the logarithm of each part's density times its share at samples (m, k), (1 + c, m) [-].
+
+        The prior's is the first.
+        """
         parts = [np.full(len(samples), np.log1p(-self.shares.sum()))]
         for share, mean, lower in zip(self.shares, self.means, self.factors, strict=True):
             standard = np.linalg.solve(lower, (samples - mean).T)
@@ -68,6 +76,7 @@ class Mixture:
     ) -> Mixture:
         """Return the mixture after one step of expectation and maximisation, (m, k) samples with weights (m,) [-].
 
+        The step is that of normal components: a t-distribution through the same factor is wider, on the safe side.
         A component that few samples support stays nearly as wide as it was, and no narrower than ``least_spread``;
         one with less than ``least_share`` of the weight goes [-].
         """
@@ -96,7 +105,7 @@ class Mixture:
 
 
 def about(peaks: list[Peak]) -> Mixture:
-    """Return the mixture of the prior and of each peak, as wide as its curvature, all peaks alike."""
+    """Return the mixture of the prior and of each peak, a little wider than its curvature, all peaks alike."""
     shares = np.full(len(peaks), (1 - PRIOR_SHARE) / len(peaks))
     means = np.array([peak.point.coordinates for peak in peaks])
     return Mixture(shares, means, np.array([_factor(peak) for peak in peaks]))
@@ -113,9 +122,9 @@ class Posterior:
     samples : (m, k) array
         Prior quantiles [-].
     weights : (m,) array
-        Their weights, summing to 1; where hardly any sample carries them, to a power by which some do [-].
+        Their weights, summing to 1; to a power below 1 where fewer than :func:`least` samples carry them [-].
     effective : float
-        As how many independent samples they are worth, to no power [-].
+        Number of independent samples that the weights are worth, before any power; 0 where no sample is possible [-].
     """
 
     log_evidence: float
@@ -125,7 +134,10 @@ class Posterior:
 
 
 def effective(weights: FloatArray) -> float:
-    """Return as how many independent samples the weighted ones are worth (Kish 1965), weights (m,) summing to 1 [-]."""
+    """Return the number of independent samples that weights (m,) summing to 1 are worth [-].
+
+    Kish 1965, Survey Sampling.
+    """
     return float(1 / np.sum(weights**2))
 
 
@@ -138,9 +150,10 @@ def least(parameters: int) -> int:
 
 
 def enough(parameters: int, share: float = 1.0) -> float:
-    """Return as how many independent samples a posterior of some share of the best one's probability is to be worth.
+    """Return the number of independent samples wanted of a posterior with ``share`` of the best one's probability [-].
 
-    The sum of all evidence is known best for its samples where each has as many as its share asks for (Neyman 1934);
+    The sum of all evidence is known best for its samples where each has as many as its share asks for (Neyman
+    1934, Journal of the Royal Statistical Society 97, 558-625);
     what holds a tenth as much as the best has all. None has fewer than twice the :func:`least`.
     """
     return max(ENOUGH_SAMPLES * min(1.0, 10.0 * share), 2.0 * least(parameters))
@@ -166,7 +179,7 @@ def draw_posterior(
     mixture : Mixture
         What is drawn from first.
     count : int
-        Samples drawn in each round.
+        Samples drawn in each round, a power of two: Sobol points are even only then.
     most : int
         Most samples in all rounds.
     wanted : float
@@ -194,12 +207,12 @@ def draw_posterior(
 def _flattened(log_weight: FloatArray, wanted: int) -> FloatArray:
     """Return a power of the weights, the first of 1, 1/2, 1/4 ... by which ``wanted`` samples carry it, (m,) [-].
 
-    The power is taken of logarithms: far from a narrow maximum most weights are too small for a number. Where fewer
-    samples than that are possible, the weights stay as they are.
+    The power is taken of logarithms: far from a narrow maximum most weights are too small for a number. Where no more
+    samples than that are possible, the weights stay as they are: equal ones are worth ``wanted`` up to round-off only.
     """
     height = log_weight - log_weight.max()
     weights = np.exp(height) / np.sum(np.exp(height))
-    while effective(weights) < wanted <= np.isfinite(height).sum():
+    while effective(weights) < wanted < np.isfinite(height).sum():
         height = height / 2
         weights = np.exp(height) / np.sum(np.exp(height))
     return np.asarray(weights)
@@ -213,8 +226,9 @@ def _factor(peak: Peak) -> FloatArray:
     a square root by QR (Golub and Van Loan 2013, Matrix Computations, section 5.2), and the covariance is never formed.
     """
     k = len(peak.gradient)
-    precision = peak.normal + np.diag(peak.outward**2) + 4.0 * np.eye(k)
+    precision = peak.normal + np.diag(peak.outward**2) + UNSEEN_CURVATURE * np.eye(k)
     values, vectors = np.linalg.eigh((precision + precision.T) / 2)
+    # 1.4 of its variance; round-off may leave an eigenvalue below that of what the data do not see
     root = (vectors * np.sqrt(1.4 / np.maximum(values, 1.0))).T
     upper = np.linalg.qr(root).R
     return np.asarray(upper.T * np.where(np.diag(upper) < 0, -1.0, 1.0))

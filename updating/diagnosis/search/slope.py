@@ -15,12 +15,12 @@ from updating.thresholds import DIFFERENCE_STEP
 
 
 def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:
-    """Return the change of the prediction per prior quantile, by differences, shape (n, k).
+    """Return the change of the prediction per prior quantile, by differences, (n, k) [-].
 
     It is 0 where a structure beside the point is impossible, so that nothing is predicted there.
     """
     columns = _differences(problem, candidate, point, None, _plain_steps(point))[0]
-    return np.where(np.isfinite(columns), columns, 0.0)
+    return _finite(columns)
 
 
 def _plain_steps(point: Point) -> FloatArray:
@@ -128,10 +128,10 @@ def _sloped(
 
 
 def curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
-    """Return Fisher information (k, k) and the data's own slope (k,) by sensitivities (n, k), the nuisances out."""
+    """Return Fisher information (k, k) and the data's own slope (k,) by sensitivities (n, k), without nuisances."""
     return normal_equations(point.comparison, _finite(columns), point.marginal.scale, keep)
 
 
 def _finite(values: FloatArray) -> FloatArray:
-    """Put nothing in the place of what a prediction beyond all measure leaves."""
+    """Return the values with 0 where they are not finite, as beside an impossible structure."""
     return np.where(np.isfinite(values), values, 0.0)
