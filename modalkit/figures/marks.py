@@ -68,9 +68,21 @@ def _points(axes: Axes, series: Series, chart: Chart, order: float) -> None:
 
 
 def _bars(axes: Axes, series: Series, chart: Chart, order: float) -> None:
+    """Draw bars from zero: lying where the upright axis has names, else upright."""
     colours = [NAMED[c] for c in series.more.get("colours", [series.colour] * len(series.y))]
-    place = _numbers(series.y)
-    axes.barh(place, _numbers(series.x), height=0.55, color=colours, label=_named(series), zorder=order)
+    x, y = _numbers(series.x), _numbers(series.y)
+    if chart.y.names:
+        axes.barh(y, x, height=0.55, color=colours, label=_named(series), zorder=order)
+    else:
+        apart = np.diff(np.unique(x)).min(initial=np.inf)
+        axes.bar(
+            x,
+            y,
+            0.55 * (apart if np.isfinite(apart) else 1.0),
+            color=colours,
+            label=_named(series),
+            zorder=order,
+        )
 
 
 def _bands(axes: Axes, series: Series, chart: Chart, order: float) -> None:

@@ -36,7 +36,7 @@ class Axis:
     zero : bool
         Whether it begins at 0 where nothing is negative.
     ticks : tuple of float
-        Where its numbers stand; left out: evenly.
+        Where its numbers stand on paper; left out: evenly. A browser places them itself.
     """
 
     title: str = ""
@@ -70,7 +70,8 @@ class Series:
     more : dict
         What else the kind has: error, low, high, bottom, top (of points the ends of an interval), value, written,
         text, colours, sizes, modes (sequences; the last are the numbers of modes that marks stand for); symbol, size,
-        width, hollow, dash, right (behind, on an axis of its own), panel (1 for the first below), unnamed.
+        width, hollow, dash, right (behind, on a logarithmic axis of its own), panel (on paper alone: 1 for the first
+        below), unnamed.
     """
 
     name: str
@@ -143,7 +144,7 @@ class Chart:
     choices : Choices, optional
         Further series of which one set is shown.
     below : sequence of Axis
-        Upright axes of panels beneath, over the same places along.
+        On paper, upright axes of panels beneath, over the same places along. A browser has charts of their own there.
     more : dict
         ``lines``: places of dotted lines upright; ``modes``: the same for modes, which are numbered on paper;
         ``zero``: an axis at 0; ``equal``: height over width of what is drawn in true proportion; ``bare``: no axes;

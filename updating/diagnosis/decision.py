@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pandas as pd
 
-from updating.diagnosis.answer.closing import Closed, Shrink
+from updating.diagnosis.answer.closing import Shrink
 from updating.diagnosis.answer.consistency import splits
 from updating.diagnosis.answer.in_no_library import SOMETHING_ELSE, SomethingElse
 from updating.diagnosis.answer.levels import levels
@@ -86,7 +86,7 @@ def diagnosis_of(
     steps.begin("comparing with a cause outside the library")
     other = something_else(problem, found, rules) if significant else None
     verdict, sets, lacks, fit_notes = _decided(
-        problem, found, other, shrink.closed, rules, significant=significant, left=left.significant
+        problem, found, other, shrink, rules, significant=significant, left=left.significant
     )
     one = on_one(problem, found)
     where = locate(*one, verdict=verdict, whole=found, rules=rules)
@@ -161,7 +161,7 @@ def _decided(
     problem: DiagnosisProblem,
     found: Search,
     other: SomethingElse | None,
-    closed: Closed | None,
+    shrink: Shrink,
     rules: DecisionRules,
     *,
     significant: bool,
@@ -169,13 +169,14 @@ def _decided(
 ) -> tuple[Verdict, tuple[tuple[str, ...], ...], Shortcoming | None, list[str]]:
     """Return the verdict, its sets, what the first set lacks, and what the reader should know of its fit.
 
-    ``closed`` is the share of the gap that the first set closes, ``left`` whether it leaves more than noise.
+    ``shrink`` is how far the first set closes the gap, ``left`` whether it leaves more than noise.
     """
     unnamed = 0.0 if other is None else other.probability
     lacks = shortcoming(
         found,
         comparable=_comparable(problem),
-        closed=None if closed is None else closed.value,
+        closed=None if shrink.closed is None else shrink.closed.value,
+        aside=shrink.all_aside,
         left=left or (other is not None and other.beside > rules.something_left),
         unnamed=unnamed,
         rules=rules,

@@ -175,3 +175,11 @@ def test_a_probability_that_rests_on_hardly_any_sample_names_nothing() -> None:
     found: Any = SimpleNamespace(compared=(row("E", 1.0, 100.0, settled=False),), empty=row("", 0.0, 0.0))
     assert shortcoming(found) == "samples"
     assert shortcoming(SimpleNamespace(compared=(row("E", 1.0, 100.0),), empty=found.empty)) is None
+
+
+def test_a_cause_that_closes_nothing_but_sets_the_gap_aside_is_no_answer() -> None:
+    found: Any = SimpleNamespace(compared=(row("E", 1.0, 100.0),), empty=row("", 0.0, 0.0))
+    assert shortcoming(found, left=True, aside=True) == "closing"
+    assert shortcoming(found, left=True) is None  # next to nothing to close
+    assert shortcoming(found, left=True, aside=True, closed=95.0) is None
+    assert shortcoming(found, left=True, closed=50.0) == "closing"

@@ -60,6 +60,9 @@ class Shrink(Displayed):
         By how much a tolerance would have to be off if tolerances alone were to explain the data [sigma].
     points : HeldPoints, optional
         The errors at points held out, where the gap shows in the FRFs.
+    aside : bool
+        Whether data count nowhere: those that the best explanation takes to be worse than stated, and does not explain
+        either.
     """
 
     metric: Metric
@@ -73,6 +76,12 @@ class Shrink(Displayed):
     closed: Closed | None
     stretch: float = 0.0
     points: HeldPoints | None = None
+    aside: bool = False
+
+    @property
+    def all_aside(self) -> bool:
+        """Whether the best explanation closes nothing: what is left of the gap lies in data that count nowhere."""
+        return self.aside and self.closed is None
 
     def size(self, value: float) -> str:
         """Return one of its errors [%] as text; of all data together, in standard deviations."""

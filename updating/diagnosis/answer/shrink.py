@@ -71,6 +71,7 @@ def shrinkage(
         closed=closed(before, after, floor, rng, rules=rules),
         stretch=_stretch(nothing),
         points=_points(problem, nothing, best, plain, metric),
+        aside=odd is not None,
     )
 
 

@@ -108,6 +108,7 @@ def shortcoming(
     comparable: bool = True,
     closed: float | None = None,
     left: bool = False,
+    aside: bool = False,
     unnamed: float = 0.0,
     rules: DecisionRules = DEFAULT_RULES,
 ) -> Shortcoming | None:
@@ -123,6 +124,8 @@ def shortcoming(
         What the first set closes of what can be closed, on modes held out; None where there is nothing to close [%].
     left : bool
         Whether the first set leaves more than noise.
+    aside : bool
+        Whether all of the gap lies in data that the first set takes to be worse than stated, and does not explain.
     unnamed : float
         Probability that the cause is in no library [-].
     rules : DecisionRules
@@ -131,7 +134,7 @@ def shortcoming(
     rows = [row for row in found.compared if row.names]
     if not rows or rejected(rows[0], rules):
         return "fit"
-    if left and closed is not None and closed < rules.closes_nearly_all:
+    if left and (aside if closed is None else closed < rules.closes_nearly_all):
         return "closing"
     if not _better(found, rules):
         return "evidence"
