@@ -25,6 +25,7 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
             "E",
             "thickness",
             "section_scale",
+            "taper",
             "length",
             "clamp_rotation",
             "clamp_translation",
@@ -175,6 +176,11 @@ def channel_rates(outcomes: Sequence[Outcome], trials: pd.DataFrame) -> Iterator
             yield share(CHANNEL, str(group), some["right"])
 
 
+def channels_of(name: str) -> set[str]:
+    """Return the channels in which an effect acts, of the library or of the rig; none of one that is not known."""
+    return {*_OUTSIDE.get(name, ()), *filter(None, [_CHANNEL.get(name)])}
+
+
 def channels(truth: Truth) -> set[str]:
     """Return the channels that are right: those of every accepted answer."""
     return {_CHANNEL[name] for names in truth.accepted for name in names if name in _CHANNEL}
@@ -182,5 +188,4 @@ def channels(truth: Truth) -> set[str]:
 
 def true_channels(truth: Truth) -> set[str]:
     """Return the channels in which what is hidden acts, those of every accepted answer among them."""
-    own = {channel for name in truth.effects for channel in _OUTSIDE.get(name, ())}
-    return channels(truth) | own | {_CHANNEL[name] for name in truth.effects if name in _CHANNEL}
+    return channels(truth).union(*map(channels_of, truth.effects))
