@@ -16,7 +16,7 @@ WITHIN = 10.0
 """Points of per cent within which a prediction counts as met [%]."""
 
 _COLUMNS = [
-    *("trial", "effect", "sort", "metric", "true_metric", "stated", "low95", "high95"),
+    *("trial", "effect", "sort", "metric", "true_metric", "said", "low95", "high95"),
     *("true", "beyond", "held_out", "covered", "held"),
 ]
 
@@ -32,7 +32,7 @@ def closing_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Share of the gap that closes [%]: ``stated`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
+        Share of the gap that closes [%]: ``said`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
         data held out), ``true`` on the rig's own modes in the band and ``beyond`` on those above it; ``covered``:
         the true one lies in the interval; ``held``: the answer holds the hidden effect.
     """
@@ -89,7 +89,7 @@ def comparable(table: pd.DataFrame) -> pd.DataFrame:
     table : pandas.DataFrame
         As :func:`closing_table` returns it.
     """
-    return table[(table["stated"] + table["true"]).notna() & (table["metric"] == table["true_metric"])]
+    return table[(table["said"] + table["true"]).notna() & (table["metric"] == table["true_metric"])]
 
 
 MET, MISSED = "closes as stated, within 10 points of per cent", "mean |stated - true| closing [%]"
@@ -118,9 +118,9 @@ def closing(table: pd.DataFrame, rng: np.random.Generator) -> Iterator[Rate]:
     } | {f"gap of {metric}": some for metric, some in stated.groupby("metric")}
     for group, some in groups.items():
         if len(some):
-            distance = (some["stated"] - some["true"]).abs().to_numpy(float)
+            distance = (some["said"] - some["true"]).abs().to_numpy(float)
             yield share(MET, group, distance <= WITHIN)
             yield measured(MISSED, group, distance, rng)
-            for question, column in ((STATED, "stated"), (TRUE, "true"), (BEYOND, "beyond")):
+            for question, column in ((STATED, "said"), (TRUE, "true"), (BEYOND, "beyond")):
                 yield number(question, group, some[column].mean(), int(some[column].notna().sum()))
             yield share(INSIDE, group, some["covered"].dropna().astype(bool))

@@ -191,7 +191,7 @@ def closing_sheet(closing: pd.DataFrame, places: pd.DataFrame) -> Sheet:
         )
     title = "How far the gap closes was not stated"
     if len(stated):
-        distance = (stated["stated"] - stated["true"]).abs()
+        distance = (stated["said"] - stated["true"]).abs()
         title = f"Stated and true shrinkage differ by {distance.mean():.1f} percentage points on average"
     return Sheet(
         title,
@@ -204,7 +204,7 @@ def closing_sheet(closing: pd.DataFrame, places: pd.DataFrame) -> Sheet:
 def _closing(stated: pd.DataFrame) -> Chart:
     low = 0.0
     if len(stated):
-        low = float(min(stated["true"].quantile(0.02), stated["stated"].quantile(0.02)))
+        low = float(min(stated["true"].quantile(0.02), stated["said"].quantile(0.02)))
         low = max(-100.0, min(0.0 if low < 60 else 50.0, 10 * np.floor(low / 10)))
     series = [_even(low)]
     right = stated["held"].astype(bool).to_numpy()
@@ -214,7 +214,7 @@ def _closing(stated: pd.DataFrame) -> Chart:
     ):
         some = stated[among]
         x, y, bottom, top = (
-            np.clip(some[name].to_numpy(float), low, WHOLE) for name in ("true", "stated", "low95", "high95")
+            np.clip(some[name].to_numpy(float), low, WHOLE) for name in ("true", "said", "low95", "high95")
         )
         if len(some):
             text = [f"trial {trial}" for trial in some["trial"]]
