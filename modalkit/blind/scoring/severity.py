@@ -123,7 +123,7 @@ def point_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``true`` and ``stated`` points, and whether they are the same.
+        ``true`` and ``said`` points, those of the answer, and whether they are the same.
     """
     rows = []
     for outcome in outcomes:
@@ -134,4 +134,4 @@ def point_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
                 continue
             own = tuple(true) if isinstance(true, list | tuple) else (int(true),)
             rows.append([outcome.index, name, str(own), str(points), sorted(own) == sorted(points)])
-    return pd.DataFrame(rows, columns=["trial", "parameter", "true", "stated", "same"])
+    return pd.DataFrame(rows, columns=["trial", "parameter", "true", "said", "same"])
