@@ -183,3 +183,9 @@ def test_a_cause_that_closes_nothing_but_sets_the_gap_aside_is_no_answer() -> No
     assert shortcoming(found, left=True) is None  # next to nothing to close
     assert shortcoming(found, left=True, aside=True, closed=95.0) is None
     assert shortcoming(found, left=True, closed=50.0) == "closing"
+
+
+@pytest.mark.parametrize(("held", "lacks"), [(0.97, None), (0.9, "evidence"), (0.16, "evidence")])
+def test_what_no_cause_with_worse_data_holds_is_not_certain(held: float, lacks: str | None) -> None:
+    found: Any = SimpleNamespace(compared=(row("E", held, 100.0),), empty=row("", 0.0, 0.0))
+    assert shortcoming(found) == lacks

@@ -136,8 +136,8 @@ def shortcoming(
         return "fit"
     if left and (aside if closed is None else closed < rules.closes_nearly_all):
         return "closing"
-    if not _better(found, rules):
-        return "evidence"
+    if not _better(found, rules) or sum(row.probability for row in rows) < rules.credible_share:
+        return "evidence"  # the rest is no cause, all data as stated or some worse
     if not rows[0].explanation.settled:
         return "samples"
     if unnamed >= rules.credible_share:
