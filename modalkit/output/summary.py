@@ -226,9 +226,9 @@ def _where(diagnosis: Diagnosis) -> str:
     each = " each" if len(acting) > 1 else ""
     text = f"{' and '.join(acting)} ({probability(where.channels[where.channel])}{each})"
     if where.location is None and not where.names:
-        return text + (
-            ", spread over the whole structure" if where.channel != "measurement" else _points(where.points)
-        )
+        if where.channel != "measurement":
+            return f"{text}, spread over the whole structure"
+        return f"{text}, {_points(where.points)}" if where.points else text
     places = list(dict.fromkeys(place(at) for at in where.locations[:3]))
     if where.names and places:
         return f"{text}, {' and '.join(where.names)} (about {' and '.join(places)})"
@@ -240,19 +240,13 @@ def _where(diagnosis: Diagnosis) -> str:
     if zone and one_of_several and not is_numbered(zone.name) and round(zone.probability, 2) >= LIKELY:
         text += f", region {zone.name}"
     if where.nearest:
-        text += f" (nearest test point{_listed(where.nearest)})"
+        text += f" (nearest test {_points(where.nearest)})"
     beside = tuple(node for node in where.points if node not in where.nearest)
-    return f"{text}; in the measurement, point{_listed(beside)}" if beside else text
+    return f"{text}; in the measurement, {_points(beside)}" if beside else text
 
 
 def _points(points: tuple[int, ...]) -> str:
-    if not points:
-        return ""
-    return f", point{_listed(points)}"
-
-
-def _listed(points: tuple[int, ...]) -> str:
-    return f"{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
+    return f"point{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
 
 
 def _next(diagnosis: Diagnosis) -> str:

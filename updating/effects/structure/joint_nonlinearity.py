@@ -179,7 +179,10 @@ class JointNonlinearity(Effect):
 
 
 def _compliance_share(predictor: Predictor, joint: int) -> float:
-    """Return by how much a clamp's compliance lowers frequencies, the mean over modes, per its inverse [SI]."""
+    """Return the mean relative fall of frequencies per compliance of a clamp.
+
+    It is in N m where the clamp turns and in N/m where it shifts, on plates per metre of edge.
+    """
 
     def build() -> FloatArray:
         spec = predictor.spec
