@@ -74,11 +74,9 @@ def _factor(written: str, unit: str, value: str) -> float:
         )
     one = _registry().Quantity(1, given)
     if not unit and not {str(name) for name, _ in one.unit_items()} <= SHARES:
-        raise ValueError(f"{value!r} is not a plain number; write it as {_example(unit)}")
+        raise ValueError(f"{value!r} is a quantity, and a ratio is asked for; write it as {_example(unit)}")
     if one.dimensionality != _registry().Quantity(1, wanted).dimensionality:
-        raise ValueError(
-            f"{value!r} is not a quantity in {unit or 'plain numbers'}; write it as {_example(unit)}"
-        )
+        raise ValueError(f"{value!r} is not a quantity in {unit or 'ratios'}; write it as {_example(unit)}")
     turns = dict(one.to_root_units().unit_items()).get("radian", 0)
     if turns not in (0, dict(_registry().Quantity(1, wanted).to_root_units().unit_items()).get("radian", 0)):
         raise ValueError(f"{value!r} is an angular rate; give it in Hz, or as 1/s")

@@ -106,7 +106,7 @@ FORM = (
               choices=("m-kg-s", "mm-t-s", "in-lbf-s")),
     FormField("test.exponential_window", "Decay of an exponential window", "test", unit="1/s", hint="0"),
     FormField("test.sensor_masses", "Sensor masses", "test", "masses", hint="5+Z: 8.6 g, 7+Z: 10 g"),
-    FormField("test.places", "Places of points [m]", "test", "places", hint="1: 0, 0, 0\n2: 0.1, 0, 0"),
+    FormField("test.places", "Places of points [m]", "test", "places", hint="1: 50 mm, 0, 0\n2: 100 mm"),
     FormField("test.calibration", "Calibration, relative", "test", hint="0.02"),
     FormField("test.repeatability", "Repeatability, relative", "test", hint="0.0005"),
     FormField("test.position_sigma", "Sigma of positions", "test", unit="mm", times=1e-3, hint="1"),
@@ -208,12 +208,13 @@ def _entry(field: FormField, entry: str) -> tuple[str, Any]:
     """Return point and mass, or point and place, of one entry of a list."""
     point, colon, rest = entry.partition(":")
     values = [part.strip() for part in rest.split(",")]
-    if not colon or not all(values) or len(values) != (3 if field.kind == "places" else 1):
+    most = 3 if field.kind == "places" else 1
+    if not colon or not all(values) or len(values) > most:
         raise InputError(
             f"{field.label}: {entry.strip()!r} cannot be read; write {field.hint.splitlines()[0]}"
         )
     read_ = [value if (number := _float(value)) is None else number for value in values]
-    return point.strip(), read_ if field.kind == "places" else read_[0]
+    return point.strip(), [*read_, 0.0, 0.0][:3] if field.kind == "places" else read_[0]
 
 
 def _float(text: str) -> float | None:

@@ -77,10 +77,11 @@ class Guard:
         if any(origin not in origins for origin in headers.get(b"origin", [])):
             return "requests from another site are refused"
         elsewhere = any(site not in (b"same-origin", b"none") for site in headers.get(b"sec-fetch-site", []))
-        followed = scope["path"] == f"/{self.token}/" and headers.get(b"sec-fetch-dest") == [b"document"]
-        if (
-            elsewhere and not followed
-        ):  # a link to the page, in a terminal that is a page itself, may be followed
+        # a link to the page, in a terminal that is a page itself, may be followed, and a report within a sandbox, which
+        # is a site of its own, be read again
+        pages = (f"/{self.token}/", f"/{self.token}/report/")
+        page = scope["path"] == pages[0] or scope["path"].startswith(pages[1])
+        if elsewhere and not (page and headers.get(b"sec-fetch-dest") == [b"document"]):
             return "requests from another site are refused"
         if scope["method"] not in ("GET", "HEAD") and headers.get(b"content-type") != [b"application/json"]:
             return "changes must be sent as JSON"

@@ -13,6 +13,7 @@ from acquisition.errors import ModalkitError
 from acquisition.quantities import hertz
 from identification import ModalModel
 from modalkit.app.toml import toml_text
+from modalkit.app.typed_units import WRITTEN
 from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
 from modalkit.views.charts.matrix import matrix_chart
@@ -69,8 +70,8 @@ class Field:
 
 
 FIELDS = (
-    Field("Length", ("model", "length"), "m", outlined=True),
-    Field("Width", ("model", "width"), "m", outlined=True),
+    Field("Length", ("model", "length"), "mm", 1e-3, outlined=True),
+    Field("Width", ("model", "width"), "mm", 1e-3, outlined=True),
     Field("Thickness", ("model", "thickness"), "mm", 1e-3, outlined=True),
     Field("Modulus E", ("model", "material", "E"), "GPa", 1e9, outlined=True),
     Field("Density", ("model", "material", "density"), "kg/m³", outlined=True),
@@ -162,19 +163,21 @@ def _fields(content: Mapping[str, Any], study: Study) -> list[dict[str, Any]]:
 
 
 def _field(content: Mapping[str, Any], study: Study, field: Field) -> dict[str, Any]:
-    """Return a value as it stands in the file, or what is taken in its place."""
+    """Return a value in the unit in which it stands in the file, or what is taken in its place."""
     stated: Any = content
     taken: Any = study
     for key in field.path:
         stated = stated.get(key) if isinstance(stated, Mapping) else None
         taken = getattr(taken, key, None)
     theory = field.path[-1] == "theory" and study.model is not None
+    own = WRITTEN.fullmatch(stated.strip()) if isinstance(stated, str) and not theory else None
     return {
         "label": field.label,
         "path": field.path,
-        "unit": "" if theory else field.unit,
+        "unit": "" if theory else field.unit if own is None else own[2],
         "times": field.times,
-        "value": stated,
+        "bare": field.times == 1.0 and own is None,
+        "value": stated if own is None else own[1],
         "default": taken,
         "choices": THEORIES[study.model.type] if theory and study.model is not None else None,
     }

@@ -11,7 +11,7 @@ from acquisition.si_units import si_value
 HANDY = {"Pa": ("GPa", 1e9), "m": ("mm", 1e-3)}
 """Unit, and what one of it is in SI units, where the study has a number without a unit."""
 
-WRITTEN = re.compile(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(.+)")
+WRITTEN = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(.+)")
 """A number with its unit."""
 
 
@@ -32,7 +32,7 @@ def unit_as_typed(content: Mapping[str, Any], name: str, unit: str) -> tuple[str
         found = WRITTEN.fullmatch(value.strip()) if isinstance(value, str) else None
         if found is not None:
             try:
-                return found[1], float(si_value(f"1 {found[1]}", unit))
+                return found[2], float(si_value(f"1 {found[2]}", unit))
             except ValueError:  # of another kind: another key of the same name
                 continue
     return HANDY.get(unit, (unit, 1.0))

@@ -63,7 +63,8 @@ def test_a_model_of_the_form_is_that_of_the_study(alone: Path, beam: Path) -> No
         ({"model.length": "376 kg"}, "model.length"),
         ({"model.deck": "part.inp"}, "no model.deck"),
         ({"test.sensor_masses": "5+Z 8 g"}, "5\\+Z: 8.6 g"),
-        ({"test.places": "1: 0, 0"}, "1: 0, 0, 0"),
+        ({"test.places": "1 0, 0"}, "1: 50 mm, 0, 0"),
+        ({"tolerances.length": "0.5 mm"}, "tolerances.length.*a ratio is asked for"),
     ],
 )
 def test_a_form_that_cannot_be_read_names_its_field(alone: Path, changed, message: str) -> None:
@@ -77,11 +78,15 @@ def test_a_form_that_cannot_be_read_names_its_field(alone: Path, changed, messag
 def test_lists_of_the_form_become_tables() -> None:
     values = BEAM | {
         "test.sensor_masses": "5+Z: 8.6 g, 7+Z: 0.01",
-        "test.places": "1: 0, 0.1, 0\n2: 5 mm, 0, 0",
+        "test.places": "1: 0, 0.1, 0\n2: 5 mm, 0, 0\n3: 50 mm",
     }
     content, _ = ACTIONS["model"]({"test": {"files": ["a.uff"]}}, {"type": "beam", "values": values})
     assert content["test"]["sensor_masses"] == {"5+Z": "8.6 g", "7+Z": 0.01}
-    assert content["test"]["places"] == {"1": [0.0, 0.1, 0.0], "2": ["5 mm", 0.0, 0.0]}
+    assert content["test"]["places"] == {
+        "1": [0.0, 0.1, 0.0],
+        "2": ["5 mm", 0.0, 0.0],
+        "3": ["50 mm", 0.0, 0.0],
+    }
 
 
 def test_every_field_of_the_form_is_a_key_of_the_study() -> None:

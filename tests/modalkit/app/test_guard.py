@@ -83,6 +83,14 @@ def test_a_link_with_the_token_may_be_followed_from_anywhere(client):
     assert client.get("/", headers=headers).status_code == 403
 
 
+def test_a_report_in_its_sandbox_may_be_read_again(client):
+    """Its own links make of a reload the request of another site."""
+    headers = {"sec-fetch-site": "cross-site", "sec-fetch-dest": "document"}
+    path = f"/{TOKEN}/report/diagnosis"
+    assert client.get(path, headers=headers).status_code == client.get(path).status_code != 403
+    assert client.get(path, headers=headers | {"sec-fetch-dest": "iframe"}).status_code == 403
+
+
 def test_a_form_of_another_page_cannot_send_a_change(client):
     answer = client.post(f"/{TOKEN}/api/undo", data={"a": "b"})
     assert answer.status_code == 403

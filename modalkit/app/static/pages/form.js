@@ -51,7 +51,7 @@ export function form(app, page, test) {
     "section",
     { class: "panel", id: "new-model" },
     h("h2", {}, "New model"),
-    h("p", { class: "muted" }, "A number may have its own unit: 376 mm, 30 Mpsi. A field left empty takes the value shown in grey."),
+    h("p", { class: "muted" }, "A number may have its own unit: 376 mm, 30 Mpsi. A number shown in grey is taken where the field is left empty; lists in grey are examples. x0 is the end at x = 0, from where places are measured."),
     h(
       "div",
       { class: "row" },

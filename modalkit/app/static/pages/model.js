@@ -139,15 +139,15 @@ export function open(root, app) {
     );
   }
 
-  /** A number in the unit of its field; what was written with a unit stays so. */
+  /** A number in the unit of its field; what was written with a unit has that unit behind it. */
   const written = (value, times) =>
     typeof value === "number" ? String(Number((value / times).toPrecision(12))) : String(value);
 
-  /** A number has the unit of its field; anything else, "376 mm" for instance, is read by the study with its own. */
-  function read(value, { unit, times }) {
+  /** A number has the unit behind its field; anything else, "376 mm" for instance, is read by the study with its own. */
+  function read(value, { unit, bare }) {
     const text = value.trim();
     if (text === "" || !Number.isFinite(Number(text))) return text;
-    return times === 1 ? Number(text) : `${text} ${unit}`;
+    return bare ? Number(text) : `${text} ${unit}`;
   }
 
   function slid() {
