@@ -31,10 +31,12 @@ def closes(diagnosis: Diagnosis) -> str:
     who = "with the best-fitting (rejected) explanation, " if diagnosis.verdict == "unknown" else ""
     text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
     if not math.isfinite(shrink.held_after):
-        return (
-            f"{text} (noise floor {say(shrink.floor)}); with a single mode, none can be held out to "
-            "check this"
+        why = (
+            "with a single mode, none can be held out to check this"
+            if len(diagnosis.gap.modes) == 1
+            else "with a mode held out, the others do not determine it"
         )
+        return f"{text} (noise floor {say(shrink.floor)}); {why}"
     text += f", {say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
     others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
     if shrink.held_runner_up is not None:
@@ -78,7 +80,8 @@ def _left(diagnosis: Diagnosis) -> str:
 def _stretched(shrink: Shrink) -> str:
     if shrink.stretch <= BELIEVED_DOUBT:
         return ""
-    needed = f"to explain the gap they would have to be off by {shrink.stretch:.0f} sigma"
+    digits = 1 if shrink.stretch < BELIEVED_DOUBT + 0.5 else 0  # 3.4 is no 3
+    needed = f"to explain the gap they would have to be off by {shrink.stretch:.{digits}f} sigma"
     return f" (limited to {BELIEVED_DOUBT:g} sigma; {needed})"
 
 

@@ -95,10 +95,11 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     found = _without_strangers(measured, prediction, trusted)
     order, mac, ratio, keep = found.order, found.mac, found.ratio, found.keep
     if not keep.any():
+        best = int(np.argmax(mac))
         raise EstimationError(
-            f"{measured.title or 'test'}: no measured mode resembles a model mode (best MAC "
-            f"{mac.max():.2f}); check axes, points, boundary conditions, and the model's units (m, Pa, "
-            "kg/m3)"
+            f"{measured.title or 'test'}: no measured mode has a partner in the model (best: MAC {mac[best]:.2f} at "
+            f"{hertz(measured.frequency[best])}, frequency ratio {np.exp(ratio[best]):.3g}); check axes, points, "
+            "boundary conditions, and the model's size and units (m, Pa, kg/m3)"
         )
     lost += [
         f"mode at {hertz(f)} has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f})"

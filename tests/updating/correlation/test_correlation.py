@@ -85,7 +85,7 @@ def test_frac_of_mere_shapes_knows_that_their_signs_are_free_and_needs_their_lev
 
 def test_nothing_in_common_is_an_error(model) -> None:
     left = np.linalg.svd(model.constants)[0][:, 5:]
-    with pytest.raises(EstimationError, match="resembles a model mode"):
+    with pytest.raises(EstimationError, match="has a partner in the model"):
         correlate(Case("none", BEAM, seen(np.array([100.0]), left[:, :1])))
 
 
