@@ -31,6 +31,9 @@ MAT_LISTS = ("axes", "responses", "references")
 MAT = ("frfs", "frequency", "axes", "quantity", "unit", "responses", "references")
 """Keys of FRFs in a MATLAB file that the form has."""
 
+UNKNOWN = "not in the file"
+"""How a reason of the proposal begins where nothing states a value."""
+
 LABELS = {"reference_node": "hit at"}
 """Keys of a column that the form calls otherwise."""
 
@@ -119,6 +122,8 @@ def _row(channel: Channel, table: Mapping[str, Any], reasons: Mapping[Any, Any],
                 for k, text in found.items()
                 if k not in ("index", "name")
             ]
+            if found.get("node", "").startswith(UNKNOWN):  # a guess would be taken for what the file states
+                shown["node"] = ""
             return row | shown | {"role": entry["quantity"], "name": row["name"], "why": why}
     return row
 
@@ -241,6 +246,8 @@ def _number(text: str, where: str) -> float:
 
 def _whole(value: Any, where: str) -> int:
     text = str(value).strip()
+    if not text and where.endswith(("node", "node hit")):
+        raise InputError(f"{where}: not in the file; type the number of the point where it was")
     if not text.isdecimal():
         raise InputError(f"{where}: {text!r} is not a whole number")
     return int(text)

@@ -148,6 +148,8 @@ def test_lines_that_hinder_are_skipped(tmp_path: Path) -> None:
         "semicolon",
         ",",
     )
+    for row in found["form"]["rows"]:
+        row["node"] = "1"
     assert layout_of(found["form"])[1].skip == 1
 
 
@@ -242,6 +244,11 @@ def test_files_of_recorders_are_imported(tmp_path: Path, write: Callable[..., No
     found = importing.proposed(names, {})
     assert found["recorded"] and found["error"] == ""
     assert any(line.startswith("force: ") for line in found["lines"])
+    unknown = [row for row in found["form"]["rows"] if row["node"] == ""]
+    assert unknown  # no guess stands where nothing states the point
+    assert "the number of the point where it was" in importing.checked(names, found["form"])["error"]
+    for row in unknown:
+        row["node"] = "1"
     checked = importing.checked(names, found["form"])
     assert checked["error"] == ""
     assert checked["table"] == [["1+Z", 3, "1+Z", f"{force.max():.3g}", "3.94"]]

@@ -230,7 +230,7 @@ export function open(root, app) {
       input(row, "unit", { placeholder: "SI", ...named("unit") }),
       input(row, "scale", { placeholder: "1", ...named("scale") }),
       ...(frfs ? [choice(row, "part", PARTS, named("part"))] : []),
-      input(row, "node", { size: 4, inputmode: "numeric", ...named("node") }),
+      input(row, "node", { size: 4, inputmode: "numeric", placeholder: "?", required: "", ...named("node") }),
       choice(row, "direction", DIRECTIONS, named("direction")),
       ...(frfs
         ? [
