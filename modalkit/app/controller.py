@@ -21,7 +21,7 @@ from modalkit.app.jobs import Jobs, drawings_of, report_of, result_of
 from modalkit.app.model_page import Moved, model_page, moved_page
 from modalkit.app.opened import Opened
 from modalkit.app.store import Store
-from modalkit.app.work import KINDS
+from modalkit.app.work import KINDS, UNREAD
 from modalkit.app.workbench import Workbench
 from modalkit.study.read import Study
 from modalkit.views.charts.damping import ExpectedDamping, damping_chart, expected_damping
@@ -72,14 +72,13 @@ class Controller:
         """What it is called."""
         return str(self._history.now.content.get("title") or self._opened.path.name)
 
-    @property
-    def _key(self) -> str:
-        """What results are kept under: the study as it stands, and its files as they are."""
-        return self._history.now.key(digest_of(self.study.inputs()[1:]))
+    def _key(self, kind: str = "") -> str:
+        """Return what results of a kind of work are kept under: what it reads of the study, and the files of it."""
+        return self._history.now.key(digest_of(self.study.inputs()[1:]), UNREAD.get(kind, ()))
 
     def _folder(self, kind: str) -> Path:
         """Return where the results of a kind of work stand."""
-        return self._store.results(kind, self._key)
+        return self._store.results(kind, self._key(kind))
 
     def state(self) -> dict[str, Any]:
         """Return what the head of the page shows."""
@@ -91,7 +90,7 @@ class Controller:
             "is_study": self._opened.is_study,
             "has_model": history.now.content.get("model") is not None,
             "has_files": bool(history.now.content.get("test", {}).get("files")),
-            "key": self._key,
+            "key": self._key(),
             "position": history.position,
             "undo": history.undo_label,
             "redo": history.redo_label,
@@ -275,7 +274,7 @@ class Controller:
         if kind not in KINDS:
             raise InputError(f"unknown job {kind!r}")
         job = self._jobs.last
-        mine = job is not None and job.kind == kind and job.key == self._key
+        mine = job is not None and job.kind == kind and job.key == self._key(kind)
         result = self._result(kind)
         if self._warm and self.study.model is not None:
             self._jobs.warm()
@@ -303,7 +302,7 @@ class Controller:
         """
         with self._lock:
             self.study.spec()
-            key = self._key
+            key = self._key(kind)
             folder = self._store.results(kind, key)
             text = study_text(self._opened, self._history.now.content, self._name(), folder)
             self._jobs.start(kind, key, text, folder)
@@ -377,7 +376,7 @@ class Controller:
             if self._result(kind) is not None:
                 continue
             for i, state in reversed(list(enumerate(history.states))):
-                if result_of(self._store.results(kind, state.key(digest))) is not None:
+                if result_of(self._store.results(kind, state.key(digest, UNREAD.get(kind, ())))) is not None:
                     after = history.states[min(i + 1, history.position)].label if i < history.position else ""
                     found.append({"kind": kind, "change": after})
                     break

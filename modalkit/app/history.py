@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -38,9 +38,16 @@ class State:
         found: dict[str, Any] = json.loads(self.text)
         return found
 
-    def key(self, files: str) -> str:
-        """Return what results of this state are kept under, with a digest of what its files hold."""
-        return hashlib.sha256(f"{files} {self.text}".encode()).hexdigest()[:16]
+    def key(self, files: str, unread: Collection[str] = ()) -> str:
+        """Return what results of this state are kept under, with a digest of what its files hold.
+
+        ``unread`` are the tables that the work does not read: its result belongs to any state of them.
+        """
+        text = self.text
+        if unread:
+            read = {name: table for name, table in self.content.items() if name not in unread}
+            text = json.dumps(read, ensure_ascii=False, allow_nan=False)
+        return hashlib.sha256(f"{files} {text}".encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)

@@ -167,6 +167,9 @@ KINDS: dict[str, Callable[[Path, Path, Progress], dict[str, Any]]] = {
     "plan": plan,
 }
 
+UNREAD: dict[str, tuple[str, ...]] = {"diagnose": ("update",), "plan": ("update",)}
+"""Tables of a study that a kind of work does not read."""
+
 
 def run(kind: str, path: Path, folder: Path) -> int:
     """Do one kind of work; an error on purpose is a line as well."""

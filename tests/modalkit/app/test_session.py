@@ -280,3 +280,15 @@ def test_hits_are_judged_once_and_decisions_come_to_the_numbers_of_the_command_l
     _, model = process(read_study(folder / "study.toml"))
     assert [row["frequency_hz"] for row in shown] == model.modal.frequency.tolist()
     assert [row["damping_sigma"] for row in shown] == model.modal.damping_sigma.tolist()
+
+
+def test_an_answer_stays_where_only_the_update_changes(beam):
+    """A diagnosis does not read [update]; an update does, and both read the model."""
+    controller = opened(beam)
+    kinds = ("diagnose", "plan", "update")
+    before = {kind: controller._folder(kind) for kind in kinds}
+    controller.act("set", {"path": ["update", "parameters"], "value": ["density"]})
+    after = {kind: controller._folder(kind) for kind in kinds}
+    assert [before[kind] == after[kind] for kind in kinds] == [True, True, False]
+    controller.act("set", {"path": ["model", "width"], "value": "31 mm"})
+    assert not set(after.values()) & {controller._folder(kind) for kind in kinds}
