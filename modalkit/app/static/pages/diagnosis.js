@@ -86,7 +86,7 @@ export function open(root, app) {
     const rows = [...singles].sort((a, b) => b.power - a.power);
     fill(
       compared,
-      rows.length
+      rows.length > 1
         ? [
             table(
               `${rows.length - 1} single causes compared so far`,
