@@ -267,7 +267,7 @@ def _next(diagnosis: Diagnosis) -> str:
         if diagnosis.verdict == "unknown":
             return test.measure
         if diagnosis.verdict == "named":
-            return f"{_look(diagnosis)}{_confirming(diagnosis, test)}"
+            return f"{_inspection(diagnosis)}{_confirming(diagnosis, test)}"
         return f"{test.measure}: {separated(test)}"
     names = diagnosis.sets[0] if diagnosis.verdict == "named" else diagnosis.effects
     ways = "; ".join(dict.fromkeys(diagnosis.known[n].separated_by for n in names if n in diagnosis.known))
@@ -281,7 +281,7 @@ def _next(diagnosis: Diagnosis) -> str:
     return ways
 
 
-def _look(diagnosis: Diagnosis) -> str:
+def _inspection(diagnosis: Diagnosis) -> str:
     """Return where to look before anything is measured: at the place of a cause that sits in the structure."""
     where = diagnosis.where
     places = dict.fromkeys(place(at) for at in where.locations[:3])

@@ -10,6 +10,7 @@ from acquisition import FrfSet, HitVerdict, InputError, force_range
 from acquisition.arrays import FloatArray
 from acquisition.hits.checks import pulse_spectrum, upright
 from acquisition.quantities import hertz, number
+from acquisition.warned import in_order
 from modalkit.output.documents import hit_document
 from modalkit.study.read import Study
 from modalkit.views.charts.frf import frf_names
@@ -38,7 +39,7 @@ def hits_page(processed: Processed | None, study: Study) -> dict[str, Any]:
         "first": first_frf(processed.frfs),
         "unit": processed.frfs.unit,
         "estimator": study.test.estimator,
-        "warnings": [str(w) for w in processed.warnings],
+        "warnings": [str(w) for w in in_order(processed.warnings)],
     }
 
 

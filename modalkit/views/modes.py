@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from acquisition import InputError, ModalData
+from acquisition.warned import in_order
 from identification import ModalModel, cmif, mpc, mvmif
 from identification.identify import Provisional
 from identification.pole_reasons import Origins
@@ -63,7 +64,7 @@ def modes_page(
         "table": table_of(modes, origins),
         "identified": False,
         "scaled": modes.modal.scaled,
-        "warnings": list(modes.warnings),
+        "warnings": list(in_order(modes.warnings)),
         "mac": _auto_mac(modes.modal),
         "band": study.test.band,
     }

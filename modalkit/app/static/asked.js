@@ -2,13 +2,20 @@
 
 import { button, field, h } from "./dom.js";
 
-/** Return a list of warnings; `after` runs once a key is written, as work that is to be done again. */
+/** Return warnings, the first of many, which counts most, before the list of the others; `after` runs once a key is
+ * written, as work that is to be done again. */
 export function warned(app, list, asks = {}, after = null) {
   if (!list?.length) return null;
+  const [first, ...others] = list;
+  if (others.length < 2) return listed(app, list, asks, after);
+  return [h("div", { class: "first-warning" }, first, answering(app, asks[first], after)), listed(app, others, asks, after, "more ")];
+}
+
+function listed(app, list, asks, after, more = "") {
   return h(
     "details",
     { class: "warnings", open: list.length < 3 || list.some((text) => asks[text]) },
-    h("summary", {}, `${list.length} ${list.length > 1 ? "warnings" : "warning"}`),
+    h("summary", {}, `${list.length} ${more}${list.length > 1 ? "warnings" : "warning"}`),
     h(
       "ul",
       {},

@@ -2,7 +2,7 @@
 
 import { get } from "../api.js";
 import { field, fill, fixed, h, raised, select, table, withoutModel } from "../dom.js";
-import { answering, warned } from "../asked.js";
+import { warned } from "../asked.js";
 import { charted, drawer } from "../drawings.js";
 import { worker } from "./work.js";
 
@@ -68,8 +68,7 @@ export function open(root, app) {
     fill(
       answer,
       h("p", { class: "big", id: "update-answer" }, found.answer),
-      d.warnings.length ? h("div", { class: "first-warning" }, d.warnings[0], answering(app, asks[d.warnings[0]], () => work.start())) : null,
-      warned(app, d.warnings.slice(1), asks, () => work.start()),
+      warned(app, d.warnings, asks, () => work.start()),
       h(
         "p",
         {},
