@@ -211,11 +211,11 @@ def _entry(row: Mapping[str, Any], *, of_frfs: bool) -> dict[str, Any]:
         entry["unit"] = unit
     if scale := str(row["scale"]).strip():
         entry["scale"] = _number(scale, f"{where}: scale")
-    entry["node"] = _whole(row["node"], f"{where}: node")
+    entry["node"] = _point(row["node"], f"{where}: node")
     entry["direction"] = str(row["direction"])
     if of_frfs:
         entry["part"] = str(row["part"])
-        entry["reference_node"] = _whole(row["reference_node"], f"{where}: node hit")
+        entry["reference_node"] = _point(row["reference_node"], f"{where}: node hit")
         entry["reference_direction"] = str(row["reference_direction"])
     return entry
 
@@ -244,10 +244,15 @@ def _number(text: str, where: str) -> float:
         raise InputError(f"{where}: {text!r} is not a number; write it as 0.01") from None
 
 
+def _point(value: Any, where: str) -> int:
+    """Return the number of a point, which no file may state."""
+    if not str(value).strip():
+        raise InputError(f"{where}: {UNKNOWN}; type the number of the point where it was")
+    return _whole(value, where)
+
+
 def _whole(value: Any, where: str) -> int:
     text = str(value).strip()
-    if not text and where.endswith(("node", "node hit")):
-        raise InputError(f"{where}: not in the file; type the number of the point where it was")
     if not text.isdecimal():
         raise InputError(f"{where}: {text!r} is not a whole number")
     return int(text)

@@ -14,7 +14,7 @@ class Wording(NamedTuple):
     Parameters
     ----------
     but : str
-        Ends "<set> fits best, but ...".
+        Ends "<set> fits best, but ..."; empty where the summary states it otherwise.
     headline : str
         Ends "A real gap, and ...".
     row : str
@@ -28,7 +28,7 @@ class Wording(NamedTuple):
 
 WORDINGS: Mapping[Shortcoming, Wording] = {
     "fit": Wording(
-        but="does not fit",
+        but="",
         headline="nothing in the library of effects explains it",
         row="fits only at an end of its plausible range",
     ),
@@ -38,7 +38,7 @@ WORDINGS: Mapping[Shortcoming, Wording] = {
         row="fits best, but closes too little of the gap and leaves more than noise",
     ),
     "evidence": Wording(
-        but="is hardly more probable than tolerances or data worse than stated",
+        but="",
         headline="no cause is clearly more probable than tolerances or data worse than stated",
         row="fits, but hardly better than a discrepancy without any effect",
     ),
@@ -48,7 +48,7 @@ WORDINGS: Mapping[Shortcoming, Wording] = {
         row="fits best, but its probability is not known",
     ),
     "partners": Wording(
-        but="most measured modes have no partner in the model",
+        but="",
         headline="most measured modes have no partner in the model",
         row="most measured modes have no partner in the model",
     ),

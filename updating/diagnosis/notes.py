@@ -61,8 +61,9 @@ def on_search(problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, .
             "causes was compared with and without them"
         )
     notes += _on_samples(found)
-    for row in found.compared[:1]:
-        notes += on_marks(problem, row.explanation.best, " + ".join(row.names) or "no cause")
+    leader = found.compared[0]
+    if leader.p_value >= REJECTED_FIT:
+        notes += on_marks(problem, leader.explanation.best, " + ".join(leader.names) or "no cause")
     for one in problem.specimens:
         notes += notes_on_doubtful(one, " or ".join(" + ".join(names) for names in sets))
         if one.theory_error is not None:

@@ -273,9 +273,8 @@ class SpecimenProblem:
         if self._places is None or not self.marks:
             return np.zeros(0)
         start = self.compare(NOMINAL)
-        of = start.of("frf")
-        count = len(self.measured.frequency)
-        least = start.settled(1.0, UNSEEN_SHARES[-1]).variance[of].reshape(-1, count).mean(axis=0)
+        noise = start.settled(1.0, UNSEEN_SHARES[-1]).variance[start.of("frf")]
+        least = noise.reshape(-1, len(self.measured.frequency)).mean(axis=0)
         return self._places.bending(self.nominal, np.sqrt(least))
 
     def compare(
@@ -340,10 +339,12 @@ class SpecimenProblem:
         """The kinds of data that the test has, in the order of ``CHANNELS``."""
         setting = self.setting
         phases = Phases(setting)
-        left_out, uneven = self._left_out()
+        # what mesh and theory leave off in ln f, column by column and mode by mode; a baseline took it out
+        known = None if self.baseline is not None else self.theory_error
+        off, uneven = left_out(known, len(self.measured.frequency))
         further = self._accepted_variance() + uneven
         every = (
-            Frequencies(setting, further, left_out, self._mesh_doubt),
+            Frequencies(setting, further, off, self._mesh_doubt),
             Dampings(setting),
             Constants(setting, phases, further),
             phases,
@@ -371,11 +372,6 @@ class SpecimenProblem:
     def damping_known(self) -> IntArray:
         """Rows of modes whose damping is measured and expected."""
         return Dampings(self.setting).rows
-
-    def _left_out(self) -> tuple[FloatArray, FloatArray]:
-        """Return what mesh and theory leave off in ln f, column by column and mode by mode; a baseline took it out."""
-        known = None if self.baseline is not None else self.theory_error
-        return left_out(known, len(self.measured.frequency))
 
     @property
     def _mesh_doubt(self) -> float:
